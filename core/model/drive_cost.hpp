@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <utility>
+
+#include "core/config/visit.hpp"
+#include "core/geometry/curve.hpp"
+#include "core/model/vehicle.hpp"
+
+namespace headland {
+
+enum class LegKind { kRow, kTurn, kTransit, kTask, kCharge };
+enum class Objective { kEnergy, kTime, kLength };
+
+/// What driving something costs.
+struct DriveCost {
+  double length_m = 0.0;
+  double duration_s = 0.0;
+  double energy_j = 0.0;
+
+  DriveCost& operator+=(const DriveCost& other) {
+    length_m += other.length_m;
+    duration_s += other.duration_s;
+    energy_j += other.energy_j;
+    return *this;
+  }
+  friend DriveCost operator+(DriveCost a, const DriveCost& b) { return a += b; }
+  /// The one number that is minimised: [J], [s] or [m].
+  double value(Objective objective) const {
+    return objective == Objective::kEnergy ? energy_j
+           : objective == Objective::kTime ? duration_s
+                                           : length_m;
+  }
+};
+
+/// Speed of a kind of leg [m/s].
+double leg_speed(const Vehicle& vehicle, LegKind kind);
+
+/// Cost of `length` [m] driven as `kind` with `cusps` changes of gear, on flat ground: base power
+/// over the duration plus the work per metre of the kind.
+DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps = 0);
+
+}  // namespace headland
+
+template <>
+struct headland::config::EnumNames<headland::LegKind> {
+  static constexpr std::pair<headland::LegKind, std::string_view> values[] = {
+      {headland::LegKind::kRow, "row"},
+      {headland::LegKind::kTurn, "turn"},
+      {headland::LegKind::kTransit, "transit"},
+      {headland::LegKind::kTask, "task"},
+      {headland::LegKind::kCharge, "charge"}};
+};
+
+template <>
+struct headland::config::EnumNames<headland::Objective> {
+  static constexpr std::pair<headland::Objective, std::string_view> values[] = {
+      {headland::Objective::kEnergy, "energy"},
+      {headland::Objective::kTime, "time"},
+      {headland::Objective::kLength, "length"}};
+};

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/polygon.hpp"
+#include "core/world/geodesy.hpp"
+
+namespace headland {
+
+/// A line that a vehicle drives at work: the centre of an alley, or a swath.
+struct Row {
+  std::string id;
+  Polyline line;  ///< at least two points [m, map]
+};
+
+/// A block of rows. Vehicles turn inside the boundary beyond the rows' ends, and up to
+/// `headland_outside_m` beyond the boundary.
+struct RowParcel {
+  std::string id;
+  std::string name;
+  Polygon boundary;
+  double row_spacing_m = 0.0;    ///< between neighbouring rows
+  double row_heading_rad = 0.0;  ///< counter-clockwise from east
+  double headland_width_m =
+      0.0;  ///< strip inside the boundary kept free at the ends of generated rows
+  double headland_outside_m = 0.0;  ///< strip beyond the boundary where vehicles may drive
+  std::vector<Row> rows;            ///< given in the file, or else generated on loading
+};
+
+struct FreeParcel {
+  std::string id;
+  Polygon boundary;
+};
+
+/// Drivable strip along a line.
+struct Road {
+  std::string id;
+  Polyline line;
+  double width_m = 4.0;
+};
+
+struct KeepOut {
+  std::string id;
+  Polygon boundary;
+};
+
+struct Gate {
+  std::string id;
+  Point2 position{0.0, 0.0};
+  double width_m = 4.0;
+};
+
+/// A named place with a role: warehouse, dock, observation, ...
+struct Poi {
+  std::string id;
+  std::string role;
+  Pose2 pose;  ///< in which a vehicle stands there
+};
+
+struct Charger {
+  std::string id;
+  Pose2 pose;  ///< in which a vehicle charges; it drives in and out forwards
+  double power_w = 10000.0;
+  int slots = 1;
+};
+
+/// A farm in its local frame; what farm files and importers produce and everything else reads.
+struct Farm {
+  std::string name;
+  LocalFrame frame;
+  std::vector<RowParcel> row_parcels;
+  std::vector<FreeParcel> free_parcels;
+  std::vector<Road> roads;
+  std::vector<KeepOut> keep_outs;
+  std::vector<Gate> gates;
+  std::vector<Poi> pois;
+  std::vector<Charger> chargers;
+
+  /// The parcel, POI or charger of that id, or null.
+  const RowParcel* find_parcel(std::string_view id) const;
+  const Poi* find_poi(std::string_view id) const;
+  const Charger* find_charger(std::string_view id) const;
+};
+
+/// Where vehicles may be at all: parcels with their outside headlands, free parcels, roads, gates,
+/// and 4 m around POIs and chargers; without keep-outs.
+std::vector<Polygon> drivable_area(const Farm& farm);
+
+}  // namespace headland

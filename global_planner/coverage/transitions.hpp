@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/base/result.hpp"
+#include "core/geometry/path.hpp"
+#include "core/geometry/region.hpp"
+#include "core/model/drive_cost.hpp"
+#include "core/world/farm.hpp"
+
+namespace headland {
+
+/// A place that a tour leaves and enters: a row's end (left outwards, entered inwards), a charger
+/// or a POI (driven into and out of in the same heading).
+struct Site {
+  Pose2 depart;
+  Pose2 arrive;
+  std::string name;  ///< for messages: "row ba20, north end"
+};
+
+struct TransitionOptions {
+  Objective objective = Objective::kEnergy;
+  double margin_m = 0.1;    ///< kept between the outline and the edge of the drivable area
+  bool reeds_shepp = true;  ///< turns may reverse (if the vehicle can)
+  bool fishtail = true;
+  double max_lead_m = 12.0;  ///< a turn may run straight on this far beyond a row's end
+};
+
+/// Drivable ways between all pairs of sites of a farm for one vehicle, each verified with the
+/// vehicle's outline: headland turns (Pi, Omega, fishtail, Reeds-Shepp) between near row ends, and
+/// for all others the best way along headlands, roads and gates.
+///
+/// Rows (as wide as their spacing) may be entered only along themselves: the outline must stay in
+/// the drivable area less the rows other than the two that the way joins.
+class Transitions {
+ public:
+  /// Error kTurnDoesNotFit names the first row end from which nothing can be reached, with the
+  /// turning radius and the room there is.
+  static Result<Transitions> build(const Farm& farm, const std::vector<Row>& rows,
+                                   const std::vector<Site>& stops, const Vehicle& vehicle,
+                                   const TransitionOptions& options = {});
+  ~Transitions();
+  Transitions(Transitions&&) noexcept;
+  Transitions& operator=(Transitions&&) noexcept;
+
+  /// Sites: ends of row r are 2 r and 2 r + 1, then the stops.
+  int sites() const;
+  const Site& site(int index) const;
+  /// Cost of the way from `from`'s departure to `to`'s arrival; infinite value where there is none.
+  DriveCost cost(int from, int to) const;
+  /// kTurn for one manoeuvre in a headland, kTransit for a longer way.
+  LegKind kind(int from, int to) const;
+  /// The way itself; empty where there is none. Leg numbers are 0.
+  Path path(int from, int to) const;
+  /// cost(i, j).value(objective) of all pairs.
+  Eigen::MatrixXd matrix() const;
+
+ private:
+  struct Impl;
+  explicit Transitions(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The path along a row's line in the given direction, corners of the survey rounded with `radius`.
+Path row_path(const Row& row, int entry, double radius);
+
+}  // namespace headland
