@@ -9,6 +9,8 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include "core/config/messages.hpp"
+
 namespace headland::config {
 
 struct Node::Impl {
@@ -122,36 +124,11 @@ Result<void> Node::set(std::string_view dotted_key, const std::string& yaml_valu
 namespace internal {
 namespace {
 
-std::string allowed(Range range) {
-  const bool low = std::isfinite(range.min);
-  const bool high = std::isfinite(range.max);
-  if (range.min == kPositive.min && !high) return "must be greater than 0";
-  if (low && high) return fmt::format("allowed: {} to {}", range.min, range.max);
-  if (low) return fmt::format("must be at least {}", range.min);
-  return fmt::format("must be at most {}", range.max);
-}
-
 tl::unexpected<Error> wrong_type(const Node& node, std::string_view wanted) {
   const std::string got = node.is_map()        ? "a map"
                           : node.is_sequence() ? "a list"
                                                : "'" + node.scalar() + "'";
   return fail(ErrorCode::kWrongType, got + " is not " + std::string(wanted), "", node.where());
-}
-
-// Levenshtein's distance, for "did you mean".
-int distance(std::string_view a, std::string_view b) {
-  std::vector<int> row(b.size() + 1);
-  for (std::size_t j = 0; j < row.size(); ++j) row[j] = static_cast<int>(j);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row.back();
 }
 
 std::string join(const auto& words) {
@@ -204,13 +181,8 @@ Result<std::string> to_text(const Node& node) {
 
 tl::unexpected<Error> unknown_key(const Node& map, const std::string& key,
                                   const std::vector<std::string>& known) {
-  const auto nearest = std::min_element(
-      known.begin(), known.end(),
-      [&](const auto& a, const auto& b) { return distance(a, key) < distance(b, key); });
-  const bool close = nearest != known.end() && distance(*nearest, key) <= 3;
   const auto child = map.child(key);
-  return fail(ErrorCode::kUnknownKey, "unknown key",
-              close ? "did you mean '" + *nearest + "'?" : "allowed: " + join(known),
+  return fail(ErrorCode::kUnknownKey, "unknown key", suggestion(key, known),
               child ? child->where() : map.where());
 }
 

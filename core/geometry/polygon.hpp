@@ -30,7 +30,8 @@ bool contains(const Polygon& polygon, const Point2& p);
 /// than three distinct points, zero area, or a ring that crosses itself (naming the place).
 Result<Polygon> checked(Polygon polygon);
 
-// Set operations on areas, each a list of disjoint polygons (GEOS; exact up to its rounding).
+// Set operations on areas, each a list of polygons (GEOS; exact up to its rounding). The lists may
+// overlap or cross themselves; the results are disjoint and pass `checked`.
 std::vector<Polygon> unite(const std::vector<Polygon>& a);
 std::vector<Polygon> subtract(const std::vector<Polygon>& a, const std::vector<Polygon>& b);
 std::vector<Polygon> intersect(const std::vector<Polygon>& a, const std::vector<Polygon>& b);

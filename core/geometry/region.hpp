@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -10,16 +11,17 @@
 namespace headland {
 
 /// An area indexed for millions of "does the vehicle fit here" questions: its edges lie in a grid.
+/// Polygons that overlap or share a border count as one area.
 class Region {
  public:
   Region() = default;
-  explicit Region(std::vector<Polygon> polygons);
+  explicit Region(const std::vector<Polygon>& polygons);
 
   const std::vector<Polygon>& polygons() const { return polygons_; }
   double area() const;
   bool contains(const Point2& p) const;
   /// True if the whole outline of a vehicle at `T_map_base`, widened by `margin` [m] on all sides,
-  /// lies inside. About 1 us; does not allocate; thread-safe.
+  /// lies inside (it may touch the border). About 0.1 us; does not allocate; thread-safe.
   bool contains(const Pose2& T_map_base, const Footprint& footprint, double margin = 0.0) const;
 
  private:
@@ -27,6 +29,19 @@ class Region {
     Point2 a;
     Point2 b;
   };
+  void size_grid();
+  void enter_edges();
+  void mark_empty_cells();
+  int column_of(double x) const {
+    return std::min(static_cast<int>((x - corner_.x()) / cell_), columns_ - 1);
+  }
+  int row_of(double y) const {
+    return std::min(static_cast<int>((y - corner_.y()) / cell_), rows_ - 1);
+  }
+  std::size_t cell_index(int column, int row) const {
+    return static_cast<std::size_t>(row * columns_ + column);
+  }
+
   std::vector<Polygon> polygons_;
   std::vector<Edge> edges_;
   Point2 corner_{0.0, 0.0};  // of the grid, lower left

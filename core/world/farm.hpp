@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/geometry/polygon.hpp"
@@ -77,6 +78,7 @@ struct Farm {
   std::vector<Gate> gates;
   std::vector<Poi> pois;
   std::vector<Charger> chargers;
+  std::vector<std::string> terrain_files;  ///< GeoTIFFs; not opened here
 
   /// The parcel, POI or charger of that id, or null.
   const RowParcel* find_parcel(std::string_view id) const;
@@ -84,8 +86,8 @@ struct Farm {
   const Charger* find_charger(std::string_view id) const;
 };
 
-/// Where vehicles may be at all: parcels with their outside headlands, free parcels, roads, gates,
-/// and 4 m around POIs and chargers; without keep-outs.
+/// Where vehicles may be at all: parcels with their outside headlands, free parcels, roads, gates
+/// (discs of their width), and 4 m around POIs and chargers; without keep-outs.
 std::vector<Polygon> drivable_area(const Farm& farm);
 
 }  // namespace headland
