@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every file in config/farms loads, and shows what its source says of it.
 #include <cstdlib>
+#include <fstream>
 #include <set>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +55,24 @@ TEST(ShippedFarms, AllLoad) {
     EXPECT_NE(again.find("FeatureCollection"), std::string::npos);
   }
   EXPECT_GE(count, 5);
+}
+
+TEST(ShippedFarms, TheExampleOfTheDocumentLoads) {
+  std::ifstream stream(kRoot / "docs" / "farm_map.md");
+  std::stringstream document;
+  document << stream.rdbuf();
+  const std::string text = document.str();
+  const std::size_t begin = text.find("```json\n");
+  ASSERT_NE(begin, std::string::npos);
+  const std::size_t end = text.find("```", begin + 8);
+  const fs::path file = fs::path(::testing::TempDir()) / "headland_farm_map_example.geojson";
+  std::ofstream(file) << text.substr(begin + 8, end - begin - 8);
+  const auto farm = load_farm({file});
+  fs::remove(file);
+  ASSERT_TRUE(farm) << to_string(farm.error());
+  EXPECT_EQ(farm->name, "Home farm");
+  EXPECT_GT(farm->row_parcels.at(0).rows.size(), 10u);
+  expect_connected(*farm);
 }
 
 // (000) Sec. IV: row width 3.8 m, row length 130 m, 3.8 ha at 42.1628, 3.0930.
