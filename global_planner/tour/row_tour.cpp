@@ -24,11 +24,10 @@ void check(const RowTourProblem& problem) {
   const auto ends = problem.start.size();
   if (ends % 2 != 0 || problem.finish.size() != ends || problem.transition.rows() != ends ||
       problem.transition.cols() != ends) {
-    throw std::invalid_argument(
-        fmt::format("row tour: start has {} ends, finish {}, the transitions {} x {}; all must be "
-                    "twice the number of rows",
-                    ends, problem.finish.size(), problem.transition.rows(),
-                    problem.transition.cols()));
+    throw std::invalid_argument(fmt::format(
+        "row tour: start has {} ends, finish {}, the transitions {} x {}; all must be "
+        "twice the number of rows",
+        ends, problem.finish.size(), problem.transition.rows(), problem.transition.cols()));
   }
   for (Eigen::Index e = 0; e < ends; ++e) {
     bool ok = problem.start[e] > -kInfinity && problem.finish[e] > -kInfinity;

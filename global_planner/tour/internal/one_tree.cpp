@@ -174,7 +174,8 @@ class Ascent {
     return row;
   }
 
-  // Subgradient ascent on the sparse graph; leaves the best penalties in place, returns their bound.
+  // Subgradient ascent on the sparse graph; leaves the best penalties in place, returns their
+  // bound.
   double climb(int steps, double lambda) {
     std::vector<double> best_penalty = penalty_;
     std::vector<double> direction(static_cast<std::size_t>(ends_), 0.0);
@@ -225,9 +226,8 @@ class Ascent {
     const int count = std::min(kNearest, ends_);
     for (int a = 0; a < ends_; ++a) {
       const double* u = cycle_.undirected_row(a);
-      std::partial_sort(
-          ends.begin(), ends.begin() + count, ends.end(),
-          [u](int x, int y) { return u[x] < u[y] || (u[x] == u[y] && x < y); });
+      std::partial_sort(ends.begin(), ends.begin() + count, ends.end(),
+                        [u](int x, int y) { return u[x] < u[y] || (u[x] == u[y] && x < y); });
       for (int i = 0; i < count; ++i) {
         const int b = ends[static_cast<std::size_t>(i)];
         if (u[b] < kInfinity) add_edge({std::min(a, b), std::max(a, b), u[b]});
@@ -249,9 +249,8 @@ class Ascent {
   }
 
   void sort_edges() {
-    std::sort(edges_.begin(), edges_.end(), [](const Edge& x, const Edge& y) {
-      return x.a < y.a || (x.a == y.a && x.b < y.b);
-    });
+    std::sort(edges_.begin(), edges_.end(),
+              [](const Edge& x, const Edge& y) { return x.a < y.a || (x.a == y.a && x.b < y.b); });
     edges_.erase(std::unique(edges_.begin(), edges_.end(),
                              [](const Edge& x, const Edge& y) { return x.a == y.a && x.b == y.b; }),
                  edges_.end());

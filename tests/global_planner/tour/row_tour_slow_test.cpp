@@ -40,15 +40,15 @@ TEST(RowTourQuality, NinetyTwoRowsInTenBlocksComeWithinOnePercent) {
 
 TEST(RowTourQuality, ThousandRowsInFortyBlocksComeWithinTwoPercent) {
   for (const std::uint64_t seed : {1, 2}) {
-    const auto problem = testing::synthetic_problem(
-        {.blocks = 40, .rows_per_block = 25, .extent = 2000.0}, seed);
+    const auto problem =
+        testing::synthetic_problem({.blocks = 40, .rows_per_block = 25, .extent = 2000.0}, seed);
     EXPECT_LT(measure(fmt::format("40 blocks, seed {}", seed), problem).gap_ratio, 0.02);
   }
 }
 
 TEST(RowTourQuality, ThousandScatteredRowsComeWithinThreePercent) {
-  const auto problem = testing::synthetic_problem(
-      {.blocks = 1000, .rows_per_block = 1, .extent = 3000.0}, 1);
+  const auto problem =
+      testing::synthetic_problem({.blocks = 1000, .rows_per_block = 1, .extent = 3000.0}, 1);
   EXPECT_LT(measure("scattered", problem).gap_ratio, 0.03);
 }
 
