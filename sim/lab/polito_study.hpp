@@ -16,13 +16,13 @@ namespace headland {
 /// and position errors. The defaults are its best case (Fig. 20, Tables 1-3).
 struct PolitoStudyConfig {
   int seed = 1;
-  int runs_count = 20;        ///< drives behind each cell with position errors
-  double cycle_s = 0.05;      ///< t; (004) gives no value, this one reproduces its RA
-  double speed_kmh = 7.0;     ///< of both followers; (004) Table 1
+  int runs_count = 20;             ///< drives behind each cell with position errors
+  double cycle_s = 0.05;           ///< t; (004) gives no value, this one reproduces its RA
+  double speed_kmh = 7.0;          ///< of both followers; (004) Table 1
   double acceleration_mps2 = 1.0;  ///< ours starts from standstill; the seed's rover is at speed
   double waypoint_pitch_m = 0.33;  ///< WPP
-  double steering_threshold_deg = 2.5;                            ///< (004) Table 3
-  std::vector<double> accuracies_m = {0.01, 0.02, 0.05, 0.1};     ///< (004) Tables 2 and 3
+  double steering_threshold_deg = 2.5;                         ///< (004) Table 3
+  std::vector<double> accuracies_m = {0.01, 0.02, 0.05, 0.1};  ///< (004) Tables 2 and 3
   std::vector<double> grid_lookahead_m = {0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0};  // Figs. 15-18
   std::vector<double> grid_waypoint_pitch_m = {0.16, 0.33, 0.66, 0.99, 1.32, 1.65};
   std::vector<double> cycles_s = {0.005, 0.01, 0.02, 0.04, 0.05, 0.1};
