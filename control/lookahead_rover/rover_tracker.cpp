@@ -45,7 +45,7 @@ RoverTracker::Errors RoverTracker::errors(const VehicleState& measured, const Po
   const double speed = std::abs(measured.speed);
   const double then = e.nearest.s - speed * config_.motion_age_s;  // where the heading belongs
   const double yaw = path.at(inside(then)).pose.yaw;
-  e.heading = wrap_angle(measured.pose.yaw - yaw);
+  e.heading = wrap_angle(measured.pose.yaw + filter_.heading_error() - yaw);
   // Per metre; at a standstill the path's curvature here.
   const double ahead = speed * dt;
   e.path_turn = speed > kStanding ? wrap_angle(path.at(inside(then + ahead)).pose.yaw - yaw) / ahead
@@ -91,7 +91,8 @@ Command RoverTracker::pivot(const VehicleState& measured, const Errors& errors, 
 }
 
 TrackOutput RoverTracker::do_step(const VehicleState& measured, double dt) {
-  const Point2 position = filter_.update(odometry(measured, dt), measured.pose.position());
+  filter_.update(odometry(measured, dt), measured.pose.position());
+  const Point2 position = filter_.position();
   last_ = measured;
   has_last_ = true;
   if (mode_ == Mode::kDone) return stand(TrackStatus::kDone);

@@ -12,7 +12,7 @@ namespace headland {
 struct RoverTrackerConfig {
   /// Natural frequency of the lateral error per metre driven [1/m]; 1/k is the distance over which
   /// an error fades.
-  double stiffness_1pm = 1.0;
+  double stiffness_1pm = 0.8;
   double damping_ratio = 1.0;
   /// Steepest approach to the path, however far off it the vehicle is [deg].
   double max_approach_deg = 40.0;
@@ -65,14 +65,14 @@ class RoverTracker : public Tracker {
   RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config);
 
   /// Where the vehicle believes to be [m, map].
-  const Point2& position_estimate() const { return filter_.estimate(); }
+  Point2 position_estimate() const { return filter_.position(); }
 
  private:
   enum class Mode { kDriving, kPivoting, kChangingGear, kDone };
   // The state relative to the path, for one tick.
   struct Errors {
     Projection nearest;
-    double heading = 0.0;    // of the vehicle against the path [rad], positive left
+    double heading = 0.0;    // of the direction of travel against the path's [rad], positive left
     double path_turn = 0.0;  // of the path over the coming cycle, per metre driven [rad/m]
     double remaining = 0.0;  // to the end of the segment [m]
   };

@@ -152,6 +152,10 @@ class Study {
       d.odometry_scale_ratio = config_.odometry_scale_ratio;
       return our_run(d, true);
     });
+    add(ours + "/" + cell_key("heading", config_.heading_error_deg), [&](RoverDrive d) {
+      d.heading_error_rad = deg_to_rad(config_.heading_error_deg);
+      return our_run(d, true);
+    });
   }
 
   void grid_cells() {

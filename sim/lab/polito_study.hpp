@@ -27,6 +27,7 @@ struct PolitoStudyConfig {
   std::vector<double> grid_waypoint_pitch_m = {0.16, 0.33, 0.66, 0.99, 1.32, 1.65};
   std::vector<double> cycles_s = {0.005, 0.01, 0.02, 0.04, 0.05, 0.1};
   double odometry_scale_ratio = 1.01;  ///< of the cells with a wrong wheel radius
+  double heading_error_deg = 0.5;      ///< of the cells with a misaligned compass
   OrchardConfig orchard;
   double lookahead_m = 0.75;  ///< LD
   RoverTrackerConfig tracker;
@@ -47,6 +48,8 @@ struct PolitoStudyConfig {
     v("cycles_s", cycles_s, config::Range{0.001, 1.0}, "Cycle times of the cycle cells [s]");
     v("odometry_scale_ratio", odometry_scale_ratio, config::Range{0.5, 2.0},
       "Told over true speed in the cells with wrong odometry");
+    v("heading_error_deg", heading_error_deg, config::Range{-10.0, 10.0},
+      "Measured less true heading in the cells with a misaligned compass [deg]");
     v("orchard", orchard, "The orchard of (004) Fig. 2");
     v("lookahead_m", lookahead_m, config::kPositive, "LD of the baseline [m]");
     v("tracker", tracker, "Our tracker; its filter is told the accuracy of the cell");
@@ -54,7 +57,7 @@ struct PolitoStudyConfig {
 };
 
 /// Cells `track/seed`, `track/ours` and theirs with `/noise_A`, `/threshold`, `/raw`,
-/// `/odometry_S`, `/arc_plant`; `grid/LD_l/WPP_p`; `cycle/t`. Metrics of each: atd_m,
+/// `/odometry_S`, `/heading_D`, `/arc_plant`; `grid/LD_l/WPP_p`; `cycle/t`. Metrics of each: atd_m,
 /// oscillation_count, ra_1pm by the seed's rule (deviation from the waypoints' polyline, every
 /// relative peak), the same with `exact_` against the exact path, and `wave_` counting only peaks
 /// of 1 mm and more there; max_m, samples_count, completed_ratio. Deterministic.

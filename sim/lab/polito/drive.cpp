@@ -13,16 +13,19 @@ namespace {
 class Receiver {
  public:
   explicit Receiver(const RoverDrive& drive)
-      : accuracy_(drive.fix_accuracy_m), errors_(drive.seed, "polito/fix") {}
+      : accuracy_(drive.fix_accuracy_m),
+        heading_error_(drive.heading_error_rad),
+        errors_(drive.seed, "polito/fix") {}
 
   Pose2 fix(const Pose2& pose) {
     const double dx = accuracy_ * errors_.uniform(-1.0, 1.0);
     const double dy = accuracy_ * errors_.uniform(-1.0, 1.0);
-    return {pose.x + dx, pose.y + dy, pose.yaw};
+    return {pose.x + dx, pose.y + dy, pose.yaw + heading_error_};
   }
 
  private:
-  double accuracy_;  // [m]
+  double accuracy_;       // [m]
+  double heading_error_;  // [rad]
   RandomStream errors_;
 };
 

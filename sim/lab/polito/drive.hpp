@@ -22,6 +22,7 @@ struct RoverDrive {
   double cycle_s = 0.05;
   double fix_accuracy_m = 0.0;        ///< half width of the fix's uniform error on each axis [m]
   double odometry_scale_ratio = 1.0;  ///< speed told by the odometry over the true one
+  double heading_error_rad = 0.0;     ///< measured less true heading
   std::uint64_t seed = 1;             ///< of the fixes' errors
 };
 
