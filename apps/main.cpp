@@ -1,2 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <fmt/format.h>
+
+#include "apps/command.hpp"
+
+namespace {
+
+using headland::apps::CommonOptions;
+
+void add_common(CLI::App* command, CommonOptions& options, const char* file_name, const char* file_help) {
+  command->add_option(file_name, options.file, file_help)->required();
+  command->add_option("--out", options.out, "Directory for all files")->capture_default_str();
+  command->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
+  command->add_option("--set", options.set, "Override a key of the file, such as planner.seed=7")
+      ->type_name("KEY=VALUE")
+      ->take_all();
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Headland: energy-aware planning and driving for farm robots"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", HEADLAND_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  headland plan config/missions/girona_orchard.yaml --out out/plan\n"
+      "  headland run config/missions/girona_orchard.yaml --set simulation.seed=7\n"
+      "  headland study config/studies/ebs221.yaml\n"
+      "Exit codes: 0 done, 2 the input is wrong, 3 no feasible answer, 4 internal error");
+  CommonOptions options;
+  int code = 0;
+
+  auto* plan = app.add_subcommand("plan", "Plan a mission: row order, turns, recharge stops");
+  add_common(plan, options, "MISSION", "Mission file (YAML)");
+  plan->callback([&] { code = headland::apps::plan_command(options); });
+
+  auto* run = app.add_subcommand("run", "Plan a mission and drive it in the lock-step simulator");
+  add_common(run, options, "MISSION", "Mission file (YAML)");
+  std::uint64_t seed = 0;
+  double realtime = 0.0;
+  auto* seed_option = run->add_option("--seed", seed, "Seed of the simulation's noise");
+  run->add_option("--realtime", realtime, "Pace: 1 is real time, 10 ten times as fast; 0: no pacing")
+      ->check(CLI::NonNegativeNumber);
+  run->callback([&] {
+    if (*seed_option) options.set.push_back(fmt::format("simulation.seed={}", seed));
+    code = headland::apps::run_command(options, realtime);
+  });
+
+  auto* study = app.add_subcommand("study", "Run a study: a grid of scenarios, with statistics");
+  add_common(study, options, "STUDY", "Study file (YAML)");
+  int jobs = 1;
+  int max_episodes = 0;
+  study->add_option("--jobs", jobs, "Episodes run at once")->check(CLI::PositiveNumber);
+  study->add_option("--max-episodes", max_episodes, "At most this many episodes per cell; 0: all")
+      ->check(CLI::NonNegativeNumber);
+  study->callback([&] { code = headland::apps::study_command(options, jobs, max_episodes); });
+
+  auto* doctor = app.add_subcommand("doctor", "Check the installation");
+  doctor->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
+  doctor->callback([&] { code = headland::apps::doctor_command(options); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "error: internal: {}; please report this with the command line\n", e.what());
+    return 4;
+  }
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/command.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/base/random.hpp"
+
+namespace headland::apps {
+
+std::string styled(const std::string& text, const char* ansi_code) {
+  if (isatty(STDERR_FILENO) == 0 || std::getenv("NO_COLOR") != nullptr) return text;
+  return fmt::format("\033[{}m{}\033[0m", ansi_code, text);
+}
+
+int report_error(const Error& error, const CommonOptions& options) {
+  fmt::print(stderr, "{} {}\n", styled("error:", "1;31"), to_string(error));
+  const int code = exit_code(error.code);
+  if (options.json) {
+    const nlohmann::ordered_json document = {
+        {"error",
+         {{"code", static_cast<int>(error.code)},
+          {"what", error.what},
+          {"remedy", error.remedy},
+          {"file", error.where.file},
+          {"line", error.where.line},
+          {"key", error.where.key}}},
+        {"exit_code", code}};
+    fmt::print("{}\n", document.dump(2));
+  }
+  return code;
+}
+
+Result<config::Node> load_with_overrides(const CommonOptions& options) {
+  auto node = config::Node::load(options.file);
+  if (!node) return node;
+  for (const std::string& assignment : options.set) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      return fail(ErrorCode::kSyntax, "'" + assignment + "' is no assignment", "write --set key=value",
+                  {"--set", 0, ""});
+    }
+    if (auto set = node->set(assignment.substr(0, equals), assignment.substr(equals + 1)); !set) {
+      return tl::unexpected<Error>(set.error());
+    }
+  }
+  return node;
+}
+
+Stamp make_stamp(std::uint64_t seed, std::string config_yaml) {
+  Stamp stamp{HEADLAND_VERSION, seed, std::move(config_yaml), ""};
+  stamp.config_hash = fmt::format("{:016x}", fnv1a(stamp.config_yaml));
+  return stamp;
+}
+
+Result<void> write_files(const std::filesystem::path& directory,
+                         const std::map<std::string, std::string>& files) {
+  const auto failed = [](const std::filesystem::path& path, const std::string& why) {
+    return fail(ErrorCode::kFileNotWritable, "cannot be written: " + why,
+                "choose another directory with --out", {path.string(), 0, ""});
+  };
+  std::error_code code;
+  std::filesystem::create_directories(directory, code);
+  if (code) return failed(directory, code.message());
+  for (const auto& [name, content] : files) {
+    const auto temporary = directory / (name + ".part");
+    std::ofstream stream(temporary, std::ios::binary);
+    stream << content;
+    stream.close();
+    if (!stream) {
+      std::filesystem::remove(temporary, code);
+      return failed(temporary, "write error");
+    }
+  }
+  for (const auto& [name, content] : files) {
+    std::filesystem::rename(directory / (name + ".part"), directory / name, code);
+    if (code) return failed(directory / name, code.message());
+  }
+  return {};
+}
+
+ProgressBar::ProgressBar(std::string label)
+    : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressBar::~ProgressBar() {
+  if (terminal_ && shown_percent_ >= 0) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::update(double fraction) {
+  const int percent = static_cast<int>(100.0 * fraction);
+  if (!terminal_ || percent == shown_percent_) return;
+  shown_percent_ = percent;
+  constexpr int kWidth = 32;
+  const int filled = kWidth * percent / 100;
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3d} %", label_, "", filled, "", kWidth - filled, percent);
+  std::fflush(stderr);
+}
+
+}  // namespace headland::apps

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include "apps/command.hpp"
+#include "apps/plan_output.hpp"
+#include "apps/planned_mission.hpp"
+
+namespace headland::apps {
+
+int plan_command(const CommonOptions& options) {
+  const auto planned = plan_from_file(options);
+  if (!planned) return report_error(planned.error(), options);
+  const std::string summary = summary_json(planned->plan, planned->planning_s, planned->stamp);
+  auto files = std::map<std::string, std::string>{
+      {"summary.json", summary},
+      {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)}};
+  if (auto written = write_files(options.out, files); !written) {
+    return report_error(written.error(), options);
+  }
+  if (options.json) {
+    fmt::print("{}", summary);
+  } else {
+    fmt::print("{}report     {}/report.html\n", plan_text(planned->plan, planned->planning_s),
+               options.out);
+  }
+  return 0;
+}
+
+}  // namespace headland::apps

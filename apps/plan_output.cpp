@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/plan_output.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace headland::apps {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kSampleSpacing = 0.5;  // of paths in plan.geojson [m]
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+Json leg_json(const PlanLeg& leg) {
+  return {{"kind", config::enum_name(leg.kind)},
+          {"id", leg.id},
+          {"length_m", rounded(leg.cost.length_m, 1e-3)},
+          {"energy_j", rounded(leg.cost.energy_j, 1e-1)},
+          {"duration_s", rounded(leg.cost.duration_s, 1e-2)},
+          {"soc_end", rounded(leg.soc_end, 1e-5)}};
+}
+
+double total_energy(const MissionPlan& plan) {
+  double energy = 0.0;
+  for (const VehiclePlan& vehicle : plan.vehicles) energy += vehicle.energy_j;
+  return energy;
+}
+
+Json stamp_json(const Stamp& stamp) {
+  return {{"version", stamp.version},
+          {"seed", stamp.seed},
+          {"config_hash", stamp.config_hash},
+          {"config_yaml", stamp.config_yaml}};
+}
+
+Json leg_coordinates(const Path& path, int leg, const Farm& farm) {
+  Json coordinates = Json::array();
+  const auto [begin, end] = path.leg_range(leg);
+  const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / kSampleSpacing)));
+  for (int i = 0; i <= steps; ++i) {
+    const LatLon p = farm.frame.to_wgs84(path.at(begin + (end - begin) * i / steps).pose.position());
+    coordinates.push_back({rounded(p.lon_deg, 1e-8), rounded(p.lat_deg, 1e-8)});
+  }
+  return coordinates;
+}
+
+}  // namespace
+
+std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp& stamp) {
+  Json document = {{"status", config::enum_name(plan.status)},
+                   {"objective", config::enum_name(plan.objective)},
+                   {"totals",
+                    {{"work_m", rounded(plan.work_m, 1e-3)},
+                     {"turn_m", rounded(plan.turn_m, 1e-3)},
+                     {"transit_m", rounded(plan.transit_m, 1e-3)},
+                     {"energy_j", rounded(total_energy(plan), 1e-1)},
+                     {"makespan_s", rounded(plan.makespan_s, 1e-2)},
+                     {"charge_stops", plan.charge_stops}}},
+                   {"objective_value", plan.value},
+                   {"lower_bound", plan.lower_bound},
+                   {"gap_ratio", plan.gap_ratio()},
+                   {"planning_s", rounded(planning_s, 1e-4)},
+                   {"vehicles", Json::array()}};
+  for (const VehiclePlan& vehicle : plan.vehicles) {
+    Json legs = Json::array();
+    for (const PlanLeg& leg : vehicle.legs) legs.push_back(leg_json(leg));
+    document["vehicles"].push_back({{"id", vehicle.id},
+                                    {"energy_j", rounded(vehicle.energy_j, 1e-1)},
+                                    {"min_soc", rounded(vehicle.min_soc, 1e-5)},
+                                    {"legs", std::move(legs)}});
+  }
+  document["headland"] = stamp_json(stamp);
+  return document.dump(2) + "\n";
+}
+
+std::string plan_geojson(const MissionPlan& plan, const Farm& farm, const Stamp& stamp) {
+  Json features = Json::array();
+  for (const VehiclePlan& vehicle : plan.vehicles) {
+    int stage = 0;
+    for (int i = 0; i < static_cast<int>(vehicle.legs.size()); ++i) {
+      const PlanLeg& leg = vehicle.legs[static_cast<std::size_t>(i)];
+      Json properties = leg_json(leg);
+      properties["vehicle"] = vehicle.id;
+      properties["leg"] = i;
+      const Path& path = vehicle.stages[static_cast<std::size_t>(stage)].path;
+      Json geometry;
+      if (leg.kind == LegKind::kCharge) {
+        const LatLon p = farm.frame.to_wgs84(path.end_pose().position());
+        geometry = {{"type", "Point"},
+                    {"coordinates", {rounded(p.lon_deg, 1e-8), rounded(p.lat_deg, 1e-8)}}};
+        ++stage;
+      } else {
+        geometry = {{"type", "LineString"}, {"coordinates", leg_coordinates(path, i, farm)}};
+      }
+      features.push_back({{"type", "Feature"}, {"properties", properties}, {"geometry", geometry}});
+    }
+  }
+  const Json document = {
+      {"type", "FeatureCollection"}, {"headland", stamp_json(stamp)}, {"features", features}};
+  return document.dump() + "\n";
+}
+
+std::string duration_text(double seconds) {
+  const auto whole = static_cast<long>(std::lround(seconds));
+  if (whole >= 3600) return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+  if (whole >= 60) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+  return fmt::format("{} s", whole);
+}
+
+std::string plan_text(const MissionPlan& plan, double planning_s) {
+  int rows = 0;
+  for (const VehiclePlan& vehicle : plan.vehicles) {
+    for (const PlanLeg& leg : vehicle.legs) rows += leg.kind == LegKind::kRow ? 1 : 0;
+  }
+  return fmt::format(
+      "plan       {} ({} to the lower bound), found in {:.2f} s\n"
+      "rows       {} rows, {:.0f} m of work\n"
+      "driving    {:.0f} m in turns, {:.0f} m in transit\n"
+      "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.0f} %\n"
+      "duration   {}\n",
+      config::enum_name(plan.status), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()), planning_s,
+      rows, plan.work_m, plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
+      plan.charge_stops == 1 ? "" : "s",
+      100.0 * (plan.vehicles.empty() ? 1.0 : plan.vehicles.front().min_soc),
+      duration_text(plan.makespan_s));
+}
+
+}  // namespace headland::apps

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <fmt/format.h>
+#include <thread>
+
+#include "apps/command.hpp"
+#include "apps/plan_output.hpp"
+#include "apps/planned_mission.hpp"
+#include "apps/run_output.hpp"
+
+namespace headland::apps {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+Run drive(const PlannedMission& planned, double realtime) {
+  ProgressBar bar("driving");
+  const auto begin = Clock::now();
+  const auto progress = [&](double fraction, double time_s) {
+    bar.update(fraction);
+    if (realtime <= 0.0) return;
+    const double ahead = time_s / realtime - seconds_since(begin);
+    if (ahead > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(ahead));
+  };
+  return drive_plan(planned.plan.vehicles.front(), planned.mission.farm, planned.config.simulation,
+                    progress);
+}
+
+}  // namespace
+
+int run_command(const CommonOptions& options, double realtime) {
+  const auto planned = plan_from_file(options);
+  if (!planned) return report_error(planned.error(), options);
+  const auto begin = Clock::now();
+  const Run run = drive(*planned, realtime);
+  const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
+
+  const std::string metrics = metrics_json(run, real_time_factor, planned->stamp);
+  const auto files = std::map<std::string, std::string>{
+      {"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
+      {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
+      {"metrics.json", metrics},
+      {"trace.csv", trace_csv(run)}};
+  if (auto written = write_files(options.out, files); !written) {
+    return report_error(written.error(), options);
+  }
+  if (options.json) {
+    fmt::print("{}", metrics);
+  } else {
+    fmt::print("{}\n{}report     {}/report.html\n", plan_text(planned->plan, planned->planning_s),
+               run_text(run, real_time_factor), options.out);
+  }
+  return run.metrics.completed ? 0 : 3;
+}
+
+}  // namespace headland::apps

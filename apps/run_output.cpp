@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/run_output.hpp"
+
+#include <fmt/format.h>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "apps/plan_output.hpp"
+
+namespace headland::apps {
+
+std::string metrics_json(const Run& run, double real_time_factor, const Stamp& stamp) {
+  const RunMetrics& m = run.metrics;
+  const TrackingMetrics& t = m.tracking;
+  nlohmann::ordered_json document = {
+      {"completed", m.completed},
+      {"reason", m.reason},
+      {"rows_done", m.rows_done},
+      {"rows_total", m.rows_total},
+      {"tracking",
+       {{"row_rms_m", t.row_rms_m},
+        {"turn_rms_m", t.turn_rms_m},
+        {"overall_rms_m", t.overall_rms_m},
+        {"max_m", t.max_m},
+        {"atd_m", t.atd_m},
+        {"oscillation_count", t.oscillation_count},
+        {"ra_1pm", t.ra_1pm}}},
+      {"energy_j", m.energy_j},
+      {"duration_s", m.duration_s},
+      {"min_soc", m.min_soc},
+      {"wrong_gear_count", m.wrong_gear_count},
+      {"real_time_factor", real_time_factor},
+      // There is nothing yet that could be hit or that stops the vehicle.
+      {"collisions", 0},
+      {"near_collisions", 0},
+      {"protective_stops", 0},
+      {"headland",
+       {{"version", stamp.version},
+        {"seed", stamp.seed},
+        {"config_hash", stamp.config_hash},
+        {"config_yaml", stamp.config_yaml}}}};
+  return document.dump(2) + "\n";
+}
+
+std::string trace_csv(const Run& run) {
+  std::string text =
+      "t_s,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,gear,leg\n";
+  auto out = std::back_inserter(text);
+  for (const TraceRow& row : run.trace) {
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, row.x_m, row.y_m, row.yaw_rad,
+                   row.speed_mps, row.steering_rad, row.yaw_rate_radps, row.s_m, row.cross_track_m,
+                   row.soc, static_cast<int>(row.gear), row.leg);
+  }
+  return text;
+}
+
+std::string run_text(const Run& run, double real_time_factor) {
+  const RunMetrics& m = run.metrics;
+  return fmt::format(
+      "run        {}{}\n"
+      "rows done  {} of {}\n"
+      "tracking   {:.1f} mm RMS in rows, {:.1f} mm in turns, at most {:.1f} mm\n"
+      "energy     {:.2f} kWh drawn, lowest state of charge {:.0f} %\n"
+      "duration   {} simulated, {:.0f} times real time\n",
+      m.completed ? "finished" : "NOT finished: ", m.reason, m.rows_done, m.rows_total,
+      1e3 * m.tracking.row_rms_m, 1e3 * m.tracking.turn_rms_m, 1e3 * m.tracking.max_m,
+      m.energy_j / 3.6e6, 100.0 * m.min_soc, duration_text(m.duration_s), real_time_factor);
+}
+
+}  // namespace headland::apps

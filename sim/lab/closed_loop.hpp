@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/config/visit.hpp"
+#include "global_planner/mission/mission_plan.hpp"
+#include "sim/lab/metrics.hpp"
+#include "sim/simulated_vehicle.hpp"
+
+namespace headland {
+
+/// How a plan is driven in simulation.
+struct SimulationConfig {
+  double step_s = 0.02;
+  std::uint64_t seed = 1;
+  double row_tolerance_m = 0.3;
+  double max_deviation_m = 3.0;
+  SensorConfig sensors;
+
+  template <class V>
+  void visit(V& v) {
+    v("step_s", step_s, config::Range{0.001, 0.2}, "Time step of vehicle and controller [s]");
+    v("seed", seed, config::kNonNegative, "Seed of the noise");
+    v("row_tolerance_m", row_tolerance_m, config::kPositive,
+      "A row counts as done if the cross-track error stayed within this [m]");
+    v("max_deviation_m", max_deviation_m, config::kPositive,
+      "The run is given up when the vehicle is farther than this from its path [m]");
+    v("sensors", sensors, "Sensor errors");
+  }
+};
+
+/// One tick of a run.
+struct TraceRow {
+  double t_s = 0.0;
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double yaw_rad = 0.0;
+  double speed_mps = 0.0;
+  double steering_rad = 0.0;     ///< Ackermann; zero for differential vehicles
+  double yaw_rate_radps = 0.0;   ///< commanded; differential vehicles
+  double s_m = 0.0;              ///< progress along the whole plan
+  double cross_track_m = 0.0;    ///< true position to the analytic path, left positive
+  double soc = 1.0;
+  Gear gear = Gear::kForward;
+  int leg = 0;
+};
+
+/// What a run amounts to (metrics.json).
+struct RunMetrics {
+  bool completed = false;
+  std::string reason;            ///< why not, if not
+  int rows_done = 0;
+  int rows_total = 0;
+  TrackingMetrics tracking;
+  double energy_j = 0.0;
+  double duration_s = 0.0;
+  double min_soc = 1.0;
+  int wrong_gear_count = 0;      ///< ticks that drove against the path's gear
+};
+
+struct Run {
+  RunMetrics metrics;
+  std::vector<bool> leg_done;
+  std::vector<TraceRow> trace;
+};
+
+/// Called about every simulated second with the fraction done and the simulated time [s].
+using Progress = std::function<void(double fraction, double time_s)>;
+
+/// Drives one vehicle's plan in lock-step simulation with the tracker that suits its kinematics.
+/// Deterministic: same plan, configuration and seed, same trace to the bit.
+Run drive_plan(const VehiclePlan& plan, const Farm& farm, const SimulationConfig& config,
+               const Progress& progress = {});
+
+}  // namespace headland
