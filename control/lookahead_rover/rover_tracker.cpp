@@ -9,6 +9,11 @@ namespace {
 
 constexpr double kStanding = 1e-3;  // slower counts as standing [m/s]
 
+bool is_finite(const VehicleState& state) {
+  return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
+         std::isfinite(state.pose.yaw) && std::isfinite(state.speed);
+}
+
 }  // namespace
 
 RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config)
@@ -91,6 +96,7 @@ Command RoverTracker::pivot(const VehicleState& measured, const Errors& errors, 
 }
 
 TrackOutput RoverTracker::do_step(const VehicleState& measured, double dt) {
+  if (!is_finite(measured)) return stand(TrackStatus::kPathLost);  // and keep it from the filter
   filter_.update(odometry(measured, dt), measured.pose.position());
   const Point2 position = filter_.position();
   last_ = measured;

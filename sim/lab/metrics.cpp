@@ -83,7 +83,7 @@ std::vector<double> deviations_from_polyline(std::span<const Point2> positions,
     for (double back = 0.0; first > 0 && back < kFollow; --first) {
       back += (waypoints[first] - waypoints[first - 1]).norm();
     }
-    std::size_t last = at;
+    std::size_t last = std::min(at + 1, segments);
     for (double ahead = 0.0; last < segments && ahead < kFollow; ++last) {
       ahead += (waypoints[last + 1] - waypoints[last]).norm();
     }

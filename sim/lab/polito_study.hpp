@@ -57,10 +57,11 @@ struct PolitoStudyConfig {
 };
 
 /// Cells `track/seed`, `track/ours` and theirs with `/noise_A`, `/threshold`, `/raw`,
-/// `/odometry_S`, `/heading_D`, `/arc_plant`; `grid/LD_l/WPP_p`; `cycle/t`. Metrics of each: atd_m,
-/// oscillation_count, ra_1pm by the seed's rule (deviation from the waypoints' polyline, every
-/// relative peak), the same with `exact_` against the exact path, and `wave_` counting only peaks
-/// of 1 mm and more there; max_m, samples_count, completed_ratio. Deterministic.
+/// `/odometry_S`, `/heading_D`, `/arc_plant`; `grid/LD_l/WPP_p`; `cycle/seed/t_T`,
+/// `cycle/ours/t_T`. Metrics of each: atd_m, oscillation_count, ra_1pm by the seed's rule
+/// (deviation from the waypoints' polyline, every relative peak), the same with `literal_` without
+/// the floor for rounding, with `exact_` against the exact path, and `wave_` counting only peaks of
+/// 1 mm and more there; max_m, samples_count, completed_ratio. Deterministic.
 Result<StudyResult> run_polito_study(const PolitoStudyConfig& config);
 
 }  // namespace headland

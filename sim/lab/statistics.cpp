@@ -39,7 +39,8 @@ Statistic summarize(std::vector<double> sample) {
   HEADLAND_CHECK(!sample.empty(), "a statistic of nothing");
   const double n = static_cast<double>(sample.size());
   Statistic result;
-  for (const double x : sample) result.mean += x / n;
+  for (const double x : sample) result.mean += x;
+  result.mean /= n;
   if (sample.size() < 2) return result;
   double squares = 0.0;
   for (const double x : sample) squares += (x - result.mean) * (x - result.mean);
