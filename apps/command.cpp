@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/command.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <cstdlib>
-#include <fmt/format.h>
 #include <fstream>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
 #include "core/base/random.hpp"
 
@@ -22,15 +22,14 @@ int report_error(const Error& error, const CommonOptions& options) {
   fmt::print(stderr, "{} {}\n", styled("error:", "1;31"), to_string(error));
   const int code = exit_code(error.code);
   if (options.json) {
-    const nlohmann::ordered_json document = {
-        {"error",
-         {{"code", static_cast<int>(error.code)},
-          {"what", error.what},
-          {"remedy", error.remedy},
-          {"file", error.where.file},
-          {"line", error.where.line},
-          {"key", error.where.key}}},
-        {"exit_code", code}};
+    const nlohmann::ordered_json document = {{"error",
+                                              {{"code", static_cast<int>(error.code)},
+                                               {"what", error.what},
+                                               {"remedy", error.remedy},
+                                               {"file", error.where.file},
+                                               {"line", error.where.line},
+                                               {"key", error.where.key}}},
+                                             {"exit_code", code}};
     fmt::print("{}\n", document.dump(2));
   }
   return code;
@@ -42,8 +41,8 @@ Result<config::Node> load_with_overrides(const CommonOptions& options) {
   for (const std::string& assignment : options.set) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
-      return fail(ErrorCode::kSyntax, "'" + assignment + "' is no assignment", "write --set key=value",
-                  {"--set", 0, ""});
+      return fail(ErrorCode::kSyntax, "'" + assignment + "' is no assignment",
+                  "write --set key=value", {"--set", 0, ""});
     }
     if (auto set = node->set(assignment.substr(0, equals), assignment.substr(equals + 1)); !set) {
       return tl::unexpected<Error>(set.error());
@@ -97,7 +96,8 @@ void ProgressBar::update(double fraction) {
   shown_percent_ = percent;
   constexpr int kWidth = 32;
   const int filled = kWidth * percent / 100;
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3d} %", label_, "", filled, "", kWidth - filled, percent);
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3d} %", label_, "", filled, "", kWidth - filled,
+             percent);
   std::fflush(stderr);
 }
 

@@ -13,10 +13,10 @@ namespace headland::apps {
 
 /// Options that every sub-command takes.
 struct CommonOptions {
-  std::string file;               ///< the mission, study, ... named on the command line
-  std::string out = "out";        ///< directory for all files
-  bool json = false;              ///< one JSON document on stdout, nothing else there
-  std::vector<std::string> set;   ///< key=value overrides
+  std::string file;              ///< the mission, study, ... named on the command line
+  std::string out = "out";       ///< directory for all files
+  bool json = false;             ///< one JSON document on stdout, nothing else there
+  std::vector<std::string> set;  ///< key=value overrides
 };
 
 /// Runs a sub-command; returns the exit code.
@@ -25,7 +25,8 @@ int run_command(const CommonOptions& options, double realtime);
 int study_command(const CommonOptions& options, int jobs, int max_episodes);
 int doctor_command(const CommonOptions& options);
 
-/// Prints the error as one line on stderr (and as JSON on stdout with --json); returns its exit code.
+/// Prints the error as one line on stderr (and as JSON on stdout with --json); returns its exit
+/// code.
 int report_error(const Error& error, const CommonOptions& options);
 
 /// Reads a YAML file and applies the `--set` overrides.

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cstdlib>
 #include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <thread>
 #include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "apps/command.hpp"
 #include "core/config/yaml.hpp"
@@ -51,7 +52,8 @@ int doctor_command(const CommonOptions& options) {
   const char* data = std::getenv("HEADLAND_DATA");
   const std::string data_directory = data != nullptr ? data : "../shared/data";
   std::vector<Check> checks{
-      {"version", true, fmt::format("{} ({}, {})", HEADLAND_VERSION, HEADLAND_BUILD_TYPE, __VERSION__)},
+      {"version", true,
+       fmt::format("{} ({}, {})", HEADLAND_VERSION, HEADLAND_BUILD_TYPE, __VERSION__)},
       {"processors", std::thread::hardware_concurrency() > 0,
        fmt::format("{}", std::thread::hardware_concurrency())},
       check_writable("."),
@@ -63,7 +65,8 @@ int doctor_command(const CommonOptions& options) {
   if (options.json) {
     nlohmann::ordered_json document = {{"ok", all_ok}, {"checks", nlohmann::ordered_json::array()}};
     for (const Check& check : checks) {
-      document["checks"].push_back({{"name", check.name}, {"ok", check.ok}, {"detail", check.detail}});
+      document["checks"].push_back(
+          {{"name", check.name}, {"ok", check.ok}, {"detail", check.detail}});
     }
     document["data_directory"] = {{"path", data_directory}, {"present", data_here}};
     fmt::print("{}\n", document.dump(2));
@@ -71,8 +74,9 @@ int doctor_command(const CommonOptions& options) {
     for (const Check& check : checks) {
       fmt::print("{:4} {:32} {}\n", check.ok ? "ok" : "FAIL", check.name, check.detail);
     }
-    fmt::print("{:4} {:32} {}\n", data_here ? "ok" : "-", "public data sets (optional)",
-               data_here ? data_directory : data_directory + " is absent; set HEADLAND_DATA to use them");
+    fmt::print(
+        "{:4} {:32} {}\n", data_here ? "ok" : "-", "public data sets (optional)",
+        data_here ? data_directory : data_directory + " is absent; set HEADLAND_DATA to use them");
   }
   return all_ok ? 0 : 4;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <CLI/CLI.hpp>
 #include <exception>
+
+#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
@@ -9,7 +10,8 @@ namespace {
 
 using headland::apps::CommonOptions;
 
-void add_common(CLI::App* command, CommonOptions& options, const char* file_name, const char* file_help) {
+void add_common(CLI::App* command, CommonOptions& options, const char* file_name,
+                const char* file_help) {
   command->add_option(file_name, options.file, file_help)->required();
   command->add_option("--out", options.out, "Directory for all files")->capture_default_str();
   command->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
@@ -40,7 +42,8 @@ int run(int argc, char** argv) {
   std::uint64_t seed = 0;
   double realtime = 0.0;
   auto* seed_option = run->add_option("--seed", seed, "Seed of the simulation's noise");
-  run->add_option("--realtime", realtime, "Pace: 1 is real time, 10 ten times as fast; 0: no pacing")
+  run->add_option("--realtime", realtime,
+                  "Pace: 1 is real time, 10 ten times as fast; 0: no pacing")
       ->check(CLI::NonNegativeNumber);
   run->callback([&] {
     if (*seed_option) options.set.push_back(fmt::format("simulation.seed={}", seed));

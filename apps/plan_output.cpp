@@ -2,6 +2,7 @@
 #include "apps/plan_output.hpp"
 
 #include <cmath>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -41,7 +42,8 @@ Json leg_coordinates(const Path& path, int leg, const Farm& farm) {
   const auto [begin, end] = path.leg_range(leg);
   const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / kSampleSpacing)));
   for (int i = 0; i <= steps; ++i) {
-    const LatLon p = farm.frame.to_wgs84(path.at(begin + (end - begin) * i / steps).pose.position());
+    const LatLon p =
+        farm.frame.to_wgs84(path.at(begin + (end - begin) * i / steps).pose.position());
     coordinates.push_back({rounded(p.lon_deg, 1e-8), rounded(p.lat_deg, 1e-8)});
   }
   return coordinates;
@@ -121,9 +123,9 @@ std::string plan_text(const MissionPlan& plan, double planning_s) {
       "driving    {:.0f} m in turns, {:.0f} m in transit\n"
       "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.0f} %\n"
       "duration   {}\n",
-      config::enum_name(plan.status), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()), planning_s,
-      rows, plan.work_m, plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
-      plan.charge_stops == 1 ? "" : "s",
+      config::enum_name(plan.status), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()),
+      planning_s, rows, plan.work_m, plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6,
+      plan.charge_stops, plan.charge_stops == 1 ? "" : "s",
       100.0 * (plan.vehicles.empty() ? 1.0 : plan.vehicles.front().min_soc),
       duration_text(plan.makespan_s));
 }

@@ -12,7 +12,8 @@ namespace headland::apps {
 /// summary.json (DESIGN section 5).
 std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp& stamp);
 
-/// plan.geojson: the legs in WGS84, in driving order, each with its kind, energy and state of charge.
+/// plan.geojson: the legs in WGS84, in driving order, each with its kind, energy and state of
+/// charge.
 std::string plan_geojson(const MissionPlan& plan, const Farm& farm, const Stamp& stamp);
 
 /// A few lines for a person, on the terminal.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
-#include <fmt/format.h>
 #include <thread>
+
+#include <fmt/format.h>
 
 #include "apps/command.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
+#include "apps/recording.hpp"
 #include "apps/run_output.hpp"
 
 namespace headland::apps {
@@ -44,7 +46,8 @@ int run_command(const CommonOptions& options, double realtime) {
       {"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
       {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
       {"metrics.json", metrics},
-      {"trace.csv", trace_csv(run)}};
+      {"trace.csv", trace_csv(run)},
+      {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm)}};
   if (auto written = write_files(options.out, files); !written) {
     return report_error(written.error(), options);
   }

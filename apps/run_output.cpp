@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/run_output.hpp"
 
-#include <fmt/format.h>
 #include <iterator>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "apps/plan_output.hpp"
@@ -47,9 +48,9 @@ std::string trace_csv(const Run& run) {
       "t_s,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,gear,leg\n";
   auto out = std::back_inserter(text);
   for (const TraceRow& row : run.trace) {
-    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, row.x_m, row.y_m, row.yaw_rad,
-                   row.speed_mps, row.steering_rad, row.yaw_rate_radps, row.s_m, row.cross_track_m,
-                   row.soc, static_cast<int>(row.gear), row.leg);
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, row.x_m, row.y_m,
+                   row.yaw_rad, row.speed_mps, row.steering_rad, row.yaw_rate_radps, row.s_m,
+                   row.cross_track_m, row.soc, static_cast<int>(row.gear), row.leg);
   }
   return text;
 }

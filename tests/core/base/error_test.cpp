@@ -7,11 +7,14 @@ namespace headland {
 namespace {
 
 TEST(Error, OneLineNamesPlaceCauseAndRemedy) {
-  const Error error{ErrorCode::kOutOfRange, "0 is out of range", "must be greater than 0",
+  const Error error{ErrorCode::kOutOfRange,
+                    "0 is out of range",
+                    "must be greater than 0",
                     {"farm.geojson", 12, "features.3.properties.row_spacing_m"}};
-  EXPECT_EQ(to_string(error),
-            "farm.geojson:12: features.3.properties.row_spacing_m: 0 is out of range; must be greater "
-            "than 0 [E106]");
+  EXPECT_EQ(
+      to_string(error),
+      "farm.geojson:12: features.3.properties.row_spacing_m: 0 is out of range; must be greater "
+      "than 0 [E106]");
 }
 
 TEST(Error, UnknownPartsAreLeftOut) {

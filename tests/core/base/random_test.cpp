@@ -2,8 +2,9 @@
 #include "core/base/random.hpp"
 
 #include <cmath>
-#include <gtest/gtest.h>
 #include <vector>
+
+#include <gtest/gtest.h>
 
 namespace headland {
 namespace {

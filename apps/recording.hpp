@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/world/farm.hpp"
+#include "sim/lab/closed_loop.hpp"
+
+namespace headland::apps {
+
+/// run.mcap: the drive at 10 Hz as Foxglove's PoseInFrame and LocationFix, the planned path as
+/// PosesInFrame, and the tracking state as JSON.
+std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm);
+
+}  // namespace headland::apps
