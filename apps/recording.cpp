@@ -89,7 +89,7 @@ std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm) 
         fmt::format(
             R"({{{},"speed_mps":{:.3f},"steering_rad":{:.4f},"cross_track_m":{:.5f},"soc":{:.5f},"s_m":{:.2f},"leg":{},"leg_kind":"{}"}})",
             stamp_text(ns), row.speed_mps, row.steering_rad, row.cross_track_m, row.soc, row.s_m,
-            leg.id, config::enum_name(leg.kind)));
+            nlohmann::json(leg.id).dump(), config::enum_name(leg.kind)));
   }
   return writer.finish();
 }
