@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "control/lookahead_rover/rover_tracker.hpp"
@@ -15,6 +16,7 @@ namespace headland {
 /// The study of seed 004: its follower reproduced, ours beside it on the same plant, path, speed
 /// and position errors. The defaults are its best case (Fig. 20, Tables 1-3).
 struct PolitoStudyConfig {
+  std::string study = "polito";
   int seed = 1;
   int runs_count = 20;             ///< drives behind each cell with position errors
   double cycle_s = 0.05;           ///< t; (004) gives no value, this one reproduces its RA
@@ -34,6 +36,7 @@ struct PolitoStudyConfig {
 
   template <class V>
   void visit(V& v) {
+    v("study", study, "Which study this file is for");
     v("seed", seed, config::Range{0, 1000000000}, "Of the position errors");
     v("runs_count", runs_count, config::Range{1, 100000}, "Drives per cell with position errors");
     v("cycle_s", cycle_s, config::Range{0.001, 1.0}, "Cycle time of both followers [s]");
