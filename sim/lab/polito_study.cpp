@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/lab/metrics.hpp"
+#include "sim/lab/parallel.hpp"
 #include "sim/lab/polito/drive.hpp"
 #include "sim/lab/polito/figures.hpp"
 #include "sim/lab/statistics.hpp"
@@ -67,8 +68,8 @@ StudyCell cell_of(const std::string& name, const std::vector<Measured>& runs) {
 // What is the same for all cells, and the drives themselves.
 class Study {
  public:
-  Study(const PolitoStudyConfig& config, OrchardPath plan)
-      : config_(config), plan_(std::move(plan)) {
+  Study(const PolitoStudyConfig& config, OrchardPath plan, int jobs)
+      : config_(config), plan_(std::move(plan)), jobs_(jobs) {
     reference_.path = plan_.path;
     reference_.leg_speed.assign(plan_.legs.size(), config.speed_kmh / 3.6);
     vehicle_.steering = Steering::kDifferential;
@@ -130,8 +131,10 @@ class Study {
     const std::string noise = accuracy > 0.0 ? "/" + cell_key("noise", accuracy) : "";
     const auto add = [&](const std::string& name,
                          const std::function<Measured(const RoverDrive&)>& run) {
-      std::vector<Measured> measured;
-      for (int i = 0; i < runs; ++i) measured.push_back(run(drive_of(accuracy, i)));
+      std::vector<Measured> measured(static_cast<std::size_t>(runs));
+      parallel_for(runs, jobs_, [&](int i) {
+        measured[static_cast<std::size_t>(i)] = run(drive_of(accuracy, i));
+      });
       result_.cells.push_back(cell_of(name, measured));
     };
     const auto on_arcs = [](RoverDrive drive) {
@@ -207,6 +210,7 @@ class Study {
 
   PolitoStudyConfig config_;
   OrchardPath plan_;
+  int jobs_ = 1;
   Reference reference_;
   Vehicle vehicle_;
   std::vector<Point2> waypoints_;
@@ -215,10 +219,10 @@ class Study {
 
 }  // namespace
 
-Result<StudyResult> run_polito_study(const PolitoStudyConfig& config) {
+Result<StudyResult> run_polito_study(const PolitoStudyConfig& config, int jobs) {
   auto plan = plan_orchard(config.orchard);
   if (!plan) return tl::unexpected<Error>(plan.error());
-  return Study(config, std::move(*plan)).run();
+  return Study(config, std::move(*plan), jobs).run();
 }
 
 }  // namespace headland

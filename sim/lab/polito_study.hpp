@@ -64,7 +64,8 @@ struct PolitoStudyConfig {
 /// `cycle/ours/t_T`. Metrics of each: atd_m, oscillation_count, ra_1pm by the seed's rule
 /// (deviation from the waypoints' polyline, every relative peak), the same with `literal_` without
 /// the floor for rounding, with `exact_` against the exact path, and `wave_` counting only peaks of
-/// 1 mm and more there; max_m, samples_count, completed_ratio. Deterministic.
-Result<StudyResult> run_polito_study(const PolitoStudyConfig& config);
+/// 1 mm and more there; max_m, samples_count, completed_ratio. `jobs` drives run at once;
+/// deterministic whatever their number.
+Result<StudyResult> run_polito_study(const PolitoStudyConfig& config, int jobs = 1);
 
 }  // namespace headland
