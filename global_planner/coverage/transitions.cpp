@@ -21,7 +21,8 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLaneSlack = 0.15;         // [m] by which lanes keep more than the margin
 constexpr double kFarthestTurnR = 6.0;      // turns are sought up to this many radii
-constexpr double kFarthestTurnRows = 12.0;  // or row spacings
+constexpr double kFarthestTurnRows = 12.0;  // or row spacings, but
+constexpr double kFarthestTurnM = 40.0;     // [m] for the latter
 constexpr int kPassagesPerParcel = 6;
 
 const char* compass(double yaw) {
@@ -47,13 +48,10 @@ struct Transitions::Impl {
   Impl(const Farm& farm, const std::vector<Row>& rows_in, const std::vector<Site>& stops,
        const Vehicle& vehicle_in, const TransitionOptions& options_in, const RowBodies& bodies);
 
-  // Ports: one of each row end, then two of each stop (leaving it, and where it is entered).
+  // Each site has a port where it is left and one where it is entered.
   int ports() const { return static_cast<int>(ports_.size()); }
-  int out_port(int site) const { return site < ends ? site : ends + 2 * (site - ends); }
-  int in_port(int site) const { return site < ends ? site : ends + 2 * (site - ends) + 1; }
-  int site_of(int port) const { return port < ends ? port : ends + (port - ends) / 2; }
-  bool leaves(int port) const { return port < ends || (port - ends) % 2 == 0; }
-  bool enters(int port) const { return port < ends || (port - ends) % 2 == 1; }
+  static int out_port(int site) { return 2 * site; }
+  static int in_port(int site) { return 2 * site + 1; }
   const Port& port(int p) const { return ports_[static_cast<std::size_t>(p)]; }
   Way& way(int from, int to) {
     return ways[static_cast<std::size_t>(from) * sites.size() + static_cast<std::size_t>(to)];
@@ -64,7 +62,7 @@ struct Transitions::Impl {
 
   void add_ports();
   void find_turns();
-  std::vector<int> turn_partners(int p) const;
+  std::vector<int> turn_partners(int from) const;
   void join_lanes(const Farm& farm, const std::vector<Polygon>& drivable, const RowBodies& bodies);
   void add_passages(const RowBodies& bodies);
   void find_lane_ways();
@@ -133,30 +131,27 @@ void Transitions::Impl::add_ports() {
   };
   for (int s = 0; s < static_cast<int>(sites.size()); ++s) {
     const Site& site = sites[static_cast<std::size_t>(s)];
-    if (s < ends) {
-      add(site.depart, s / 2, Travel::kBoth);
-    } else {
-      add(site.depart, space.row_at(site.depart.position()), Travel::kForth);
-      add(reversed(site.arrive), space.row_at(site.arrive.position()), Travel::kBack);
-    }
+    add(site.depart, s < ends ? s / 2 : space.row_at(site.depart.position()), Travel::kForth);
+    add(reversed(site.arrive), s < ends ? s / 2 : space.row_at(site.arrive.position()),
+        Travel::kBack);
   }
 }
 
-// Later ports that a single manoeuvre may join: near, and neither far behind the other.
-std::vector<int> Transitions::Impl::turn_partners(int p) const {
+// Sites that a single manoeuvre may lead to: near, and neither far behind the other.
+std::vector<int> Transitions::Impl::turn_partners(int from) const {
   std::vector<int> partners;
-  const double farthest = std::max(kFarthestTurnR * radius, kFarthestTurnRows * spacing);
-  const TurnEnd& a = port(p).end;
-  for (int q = p + 1; q < ports(); ++q) {
-    const TurnEnd& b = port(q).end;
+  const double farthest =
+      std::max(kFarthestTurnR * radius, std::min(kFarthestTurnRows * spacing, kFarthestTurnM));
+  const TurnEnd& a = port(out_port(from)).end;
+  for (int to = 0; to < static_cast<int>(sites.size()); ++to) {
+    if (to == from || (to < ends && to / 2 == from / 2)) continue;
+    const TurnEnd& b = port(in_port(to)).end;
     const Point2 d = b.out.position() - a.out.position();
     if (d.squaredNorm() > farthest * farthest || b.free_run < 0.0) continue;
-    if (site_of(p) == site_of(q) || (q < ends && p / 2 == q / 2)) continue;
-    if (!(leaves(p) && enters(q)) && !(leaves(q) && enters(p))) continue;
     if (d.dot(a.out.heading()) < -farthest / 2.0 || -d.dot(b.out.heading()) < -farthest / 2.0) {
       continue;
     }
-    partners.push_back(q);
+    partners.push_back(to);
   }
   return partners;
 }
@@ -164,43 +159,34 @@ std::vector<int> Transitions::Impl::turn_partners(int p) const {
 void Transitions::Impl::find_turns() {
   struct Found {
     int to;
-    TurnPair pair;
+    Turn turn;
   };
-  std::vector<std::vector<Found>> found(ports_.size());
+  std::vector<std::vector<Found>> found(sites.size());
   const bool reverses = vehicle.can_reverse;
   const TurnKinds kinds{true, reverses && options.fishtail, reverses && options.reeds_shepp};
   const TurnSearch search(space, radius);
-  parallel_for(ports(), [&](int p) {
-    if (port(p).end.free_run < 0.0) return;
-    for (const int q : turn_partners(p)) {
-      const CostRate rate = q < ends ? turn_rate : transit_rate;
-      TurnPair pair;
-      const TurnEnd& a = port(p).end;
-      const TurnEnd& b = port(q).end;
-      if (q < ends) {
-        pair = search.both_ways(a, b, kinds, rate);
-      } else {
-        if (leaves(p) && enters(q)) {
-          pair.forth = search.one_track(a, b, kinds, rate, Travel::kForth);
-        }
-        if (leaves(q) && enters(p)) {
-          pair.back = search.one_track(a, b, kinds, rate, Travel::kBack);
-          if (pair.back) pair.back = mirrored(*pair.back);
-        }
-      }
-      if (pair.forth || pair.back) found[static_cast<std::size_t>(p)].push_back({q, pair});
+  // Alike in front and behind, a vehicle drives the mirror image of each turn between rows back.
+  const bool alike = vehicle.footprint.front_m == vehicle.footprint.rear_m;
+  parallel_for(static_cast<int>(sites.size()), [&](int from) {
+    const TurnEnd& a = port(out_port(from)).end;
+    if (a.free_run < 0.0) return;
+    for (const int to : turn_partners(from)) {
+      const bool rows_both = from < ends && to < ends;
+      if (alike && rows_both && to < from) continue;
+      const auto turn =
+          search.find(a, port(in_port(to)).end, kinds, rows_both ? turn_rate : transit_rate);
+      if (turn) found[static_cast<std::size_t>(from)].push_back({to, *turn});
     }
   });
-  const auto enter = [this](int from, int to, const std::optional<Turn>& turn) {
-    if (!turn) return;
-    way(from, to) = {turn->length(), static_cast<int>(turns.size()),
-                     static_cast<std::int16_t>(turn->cusps()), WayType::kTurn};
-    turns.push_back(*turn);
+  const auto enter = [this](int from, int to, const Turn& turn) {
+    way(from, to) = {turn.length(), static_cast<int>(turns.size()),
+                     static_cast<std::int16_t>(turn.cusps()), WayType::kTurn};
+    turns.push_back(turn);
   };
-  for (int p = 0; p < ports(); ++p) {
-    for (const Found& f : found[static_cast<std::size_t>(p)]) {
-      enter(site_of(p), site_of(f.to), f.pair.forth);
-      enter(site_of(f.to), site_of(p), f.pair.back);
+  for (int from = 0; from < static_cast<int>(sites.size()); ++from) {
+    for (const Found& f : found[static_cast<std::size_t>(from)]) {
+      enter(from, f.to, f.turn);
+      if (alike && from < ends && f.to < ends) enter(f.to, from, mirrored(f.turn));
     }
   }
 }
@@ -215,10 +201,10 @@ void Transitions::Impl::join_lanes(const Farm& farm, const std::vector<Polygon>&
   parallel_for(ports(), [this](int p) {
     if (port(p).end.free_run < 0.0) return;
     auto& found = connections[static_cast<std::size_t>(p)];
-    found = lanes->connect(port(p), {});
+    found = lanes->connect(port(p), false);
     // Too little room to turn forwards onto a lane.
     if (found.size() < 2 && vehicle.can_reverse && options.reeds_shepp) {
-      const auto reversing = lanes->connect(port(p), {false, false, true});
+      const auto reversing = lanes->connect(port(p), true);
       found.insert(found.end(), reversing.begin(), reversing.end());
     }
   });
@@ -229,36 +215,41 @@ void Transitions::Impl::join_lanes(const Farm& farm, const std::vector<Polygon>&
 // as lanes across it.
 void Transitions::Impl::add_passages(const RowBodies& bodies) {
   std::vector<Passage> passages;
+  const auto connected = [this](int port) -> const std::vector<Connection>& {
+    return connections[static_cast<std::size_t>(port)];
+  };
   for (const std::vector<int>& block : bodies.parcels) {
-    std::vector<int> open;
-    for (const int r : block) {
-      const auto first = static_cast<std::size_t>(2 * r);
-      if (!connections[first].empty() && !connections[first + 1].empty()) open.push_back(r);
-    }
-    const int count = static_cast<int>(open.size());
-    const int wanted = std::min(count, kPassagesPerParcel);
-    for (int k = 0; k < wanted; ++k) {
-      const int at = wanted == 1 ? 0 : k * (count - 1) / (wanted - 1);
-      const auto r = static_cast<std::size_t>(open[static_cast<std::size_t>(at)]);
-      passages.push_back({row_paths[r], connections[2 * r], connections[2 * r + 1]});
+    for (const int entry : {0, 1}) {
+      std::vector<int> open;
+      for (const int r : block) {
+        if (!connected(in_port(2 * r + entry)).empty() &&
+            !connected(out_port(2 * r + 1 - entry)).empty()) {
+          open.push_back(r);
+        }
+      }
+      const int count = static_cast<int>(open.size());
+      const int wanted = std::min(count, kPassagesPerParcel);
+      for (int k = 0; k < wanted; ++k) {
+        const int r =
+            open[static_cast<std::size_t>(wanted == 1 ? 0 : k * (count - 1) / (wanted - 1))];
+        passages.push_back({row_path(rows[static_cast<std::size_t>(r)], entry, radius),
+                            connected(in_port(2 * r + entry)),
+                            connected(out_port(2 * r + 1 - entry))});
+      }
     }
   }
   lanes->add_passages(std::move(passages));
 }
 
 void Transitions::Impl::find_lane_ways() {
-  parallel_for(ports(), [this](int p) {
-    const auto& from = connections[static_cast<std::size_t>(p)];
-    if (from.empty()) return;
+  parallel_for(static_cast<int>(sites.size()), [this](int from) {
+    const auto& begin = connections[static_cast<std::size_t>(out_port(from))];
+    if (begin.empty()) return;
     LaneGraph::Search search(*lanes);
-    search.run(from);
-    for (int q = p + 1; q < ports(); ++q) {
-      const auto& to = connections[static_cast<std::size_t>(q)];
-      if (to.empty() || site_of(p) == site_of(q)) continue;
-      const WayCost found = search.to(to);
-      // The way from p to q and its mirror image: no other p writes these.
-      if (leaves(p) && enters(q)) offer_lane_way(site_of(p), site_of(q), found);
-      if (leaves(q) && enters(p)) offer_lane_way(site_of(q), site_of(p), found);
+    search.run(begin);
+    for (int to = 0; to < static_cast<int>(sites.size()); ++to) {
+      const auto& end = connections[static_cast<std::size_t>(in_port(to))];
+      if (to != from && !end.empty()) offer_lane_way(from, to, search.to(end));
     }
   });
 }
@@ -342,17 +333,11 @@ LegKind Transitions::Impl::kind(const Way& w, int from, int to) const {
 }
 
 Path Transitions::Impl::lane_path(int from, int to) const {
-  // In the sense in which it was searched.
-  const int p = out_port(from);
-  const int q = in_port(to);
-  const int first = std::min(p, q);
-  const int last = std::max(p, q);
+  const auto& begin = connections[static_cast<std::size_t>(out_port(from))];
   LaneGraph::Search search(*lanes);
-  search.run(connections[static_cast<std::size_t>(first)]);
-  const Path path =
-      search.path_to(port(first).end.out, connections[static_cast<std::size_t>(first)],
-                     connections[static_cast<std::size_t>(last)]);
-  return p < q ? path : mirrored(path);
+  search.run(begin);
+  return search.path_to(port(out_port(from)).end.out, begin,
+                        connections[static_cast<std::size_t>(in_port(to))]);
 }
 
 Path Transitions::Impl::path(int from, int to) const {

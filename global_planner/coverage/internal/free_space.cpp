@@ -65,16 +65,15 @@ FreeSpace::FreeSpace(const std::vector<Polygon>& drivable, const std::vector<Row
       const double length = (line[i] - line[i - 1]).norm();
       if (length <= 0.0) continue;
       slabs_.push_back({0.5 * (line[i] + line[i - 1]), (line[i] - line[i - 1]) / length,
-                        0.5 * length, 0.5 * rows[r].width, static_cast<int>(r)});
+                        0.5 * length, 0.5 * (rows[r].spacing - kSlit), 0.5 * rows[r].spacing,
+                        static_cast<int>(r)});
     }
   }
   if (!slabs_.empty()) enter_slabs();
 }
 
 void FreeSpace::enter_slabs() {
-  const auto box_of = [](const Slab& s) {
-    return Box{s.center, s.axis, s.half_length, s.half_width};
-  };
+  const auto box_of = [](const Slab& s) { return Box{s.center, s.axis, s.half_length, s.side}; };
   Point2 low = slabs_.front().center;
   Point2 high = low;
   for (const Slab& slab : slabs_) {
@@ -135,8 +134,15 @@ bool FreeSpace::clear_of_rows(const Pose2& pose, const Footprint& shape, double 
     for (int k = begin; k < end; ++k) {
       const int index = cell_slabs_[static_cast<std::size_t>(k)];
       const Slab& slab = slabs_[static_cast<std::size_t>(index)];
-      if (own.has(slab.row)) continue;
-      if (overlap(box, {slab.center, slab.axis, slab.half_length, slab.half_width})) return false;
+      if (!own.has(slab.row)) {
+        if (overlap(box, {slab.center, slab.axis, slab.half_length, slab.half_width})) return false;
+        continue;
+      }
+      const Point2 side = slab.side * Point2(-slab.axis.y(), slab.axis.x());
+      if (overlap(box, {slab.center + side, slab.axis, slab.half_length, 0.0}) ||
+          overlap(box, {slab.center - side, slab.axis, slab.half_length, 0.0})) {
+        return false;
+      }
     }
   }
   return true;
@@ -207,6 +213,12 @@ double FreeSpace::free_run(const Pose2& from, double most, double step, Travel t
     }
   }
   return low * step;
+}
+
+double FreeSpace::swing(double radius) const {
+  return std::hypot(radius + 0.5 * outline_.width_m + margin_,
+                    std::max(outline_.front_m, outline_.rear_m) + margin_) -
+         radius;
 }
 
 double FreeSpace::room_ahead(const Pose2& from, double most, OwnRows own) const {

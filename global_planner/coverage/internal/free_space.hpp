@@ -11,7 +11,7 @@
 
 namespace headland::coverage {
 
-/// Rows whose bodies a way may touch: those that it joins. -1: none.
+/// Rows that a way joins: it may be inside their bodies, but not cross their sides. -1: none.
 struct OwnRows {
   int first = -1;
   int second = -1;
@@ -22,11 +22,13 @@ struct OwnRows {
 /// other way, so that its front takes the place of its rear; kBoth asks for both at once.
 enum class Travel { kForth, kBack, kBoth };
 
-/// A row and how wide it is.
+/// A row and how much ground it takes.
 struct RowBody {
-  Polyline line;       ///< [m, map]
-  double width = 0.0;  ///< [m]
+  Polyline line;         ///< [m, map]
+  double spacing = 0.0;  ///< from side to side [m]
 };
+
+inline constexpr double kSlit = 0.02;  ///< [m] between the bodies of neighbouring rows
 
 /// Where the outline of one vehicle may be outside rows: the drivable area less the rows' bodies.
 /// Thread-safe; queries do not allocate.
@@ -48,9 +50,13 @@ class FreeSpace {
   /// How far the outline can run straight on from `from`: the largest multiple of `step` up to
   /// `most` [m]; -1 if it does not even fit there.
   double free_run(const Pose2& from, double most, double step, Travel travel, OwnRows own) const;
+  /// How far the outline with its margin reaches out of a curve of that radius, to its outer side
+  /// [m].
+  double swing(double radius) const;
   /// Length [m] of the strip as wide as the vehicle that is free ahead of `from`, up to `most`; for
   /// messages.
   double room_ahead(const Pose2& from, double most, OwnRows own) const;
+  const Footprint& outline() const { return outline_; }
   const std::vector<Polygon>& drivable() const { return area_.polygons(); }
   /// The row whose body holds `p`, or -1.
   int row_at(const Point2& p) const;
@@ -62,6 +68,7 @@ class FreeSpace {
     Point2 axis;
     double half_length = 0.0;
     double half_width = 0.0;
+    double side = 0.0;  // from the centre line to the row's sides [m]
     int row = -1;
   };
   Footprint outline(Travel travel) const;

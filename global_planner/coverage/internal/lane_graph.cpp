@@ -18,7 +18,9 @@ constexpr double kDetour = 1.03;          // an edge this little shorter than tw
 constexpr double kLongest = 1.5;          // curve to distance; beyond, the edge is no lane
 constexpr std::size_t kConnections = 10;  // of a port at most
 constexpr double kConnectionStep = 1.0;   // [m] of its leads
-constexpr int kBlock = 1024;              // edges verified at once
+// Beside a wall, a long nose can only be swung gently.
+constexpr double kGentle = 4.0;  // times the turning radius
+constexpr int kBlock = 1024;     // edges verified at once
 
 }  // namespace
 
@@ -115,38 +117,50 @@ bool LaneGraph::bypassed(const Candidate& edge) const {
 void LaneGraph::join(const std::vector<Candidate>& candidates) {
   accepted_.resize(static_cast<std::size_t>(nodes()));
   std::vector<int> open;
-  std::vector<char> fits;
+  std::vector<double> radii;
   const int count = static_cast<int>(candidates.size());
   for (int begin = 0; begin < count; begin += kBlock) {
     open.clear();
     for (int i = begin; i < std::min(begin + kBlock, count); ++i) {
       if (!bypassed(candidates[static_cast<std::size_t>(i)])) open.push_back(i);
     }
-    fits.assign(open.size(), 0);
+    radii.assign(open.size(), 0.0);
     parallel_for(static_cast<int>(open.size()), [&](int k) {
-      const auto& edge = candidates[static_cast<std::size_t>(open[static_cast<std::size_t>(k)])];
-      const Pose2 from = pose(edge.from);
-      const Curve curve = shortest_dubins(from, pose(edge.to), radius_);
-      fits[static_cast<std::size_t>(k)] = space_.fits(from, curve, Travel::kBoth, {}) ? 1 : 0;
+      const auto at = static_cast<std::size_t>(k);
+      radii[at] = fitting_radius(candidates[static_cast<std::size_t>(open[at])]);
     });
     for (std::size_t k = 0; k < open.size(); ++k) {
       const Candidate& edge = candidates[static_cast<std::size_t>(open[k])];
-      if (fits[k] == 0 || bypassed(edge)) continue;
-      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, edge.length);
+      if (radii[k] == 0.0 || bypassed(edge)) continue;
       Step step;
       step.from = edge.from;
       step.to = edge.to;
-      step.length = edge.length;
+      step.radius = radii[k];
+      step.length = radii[k] == radius_ ? edge.length
+                                        : dubins_length(pose(edge.from), pose(edge.to), radii[k]);
+      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, step.length);
       add_step(step);
       if (std::pair(edge.to ^ 1, edge.from ^ 1) == std::pair(edge.from, edge.to)) continue;
-      accepted_[static_cast<std::size_t>(edge.to ^ 1)].emplace_back(edge.from ^ 1, edge.length);
       step.from = edge.to ^ 1;
       step.to = edge.from ^ 1;
       step.mirrored = true;
+      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, step.length);
       add_step(step);
     }
   }
   accepted_.clear();
+}
+
+// The radius of a curve along which the outline fits both ways; 0: none.
+double LaneGraph::fitting_radius(const Candidate& edge) const {
+  const Pose2 from = pose(edge.from);
+  const Pose2 to = pose(edge.to);
+  for (const double radius : {radius_, kGentle * radius_}) {
+    const Curve curve = without_slivers(shortest_dubins(from, to, radius));
+    if (curve.length() > kLongest * (to.position() - from.position()).norm() + radius_) break;
+    if (space_.fits(from, curve, Travel::kBoth, {})) return radius;
+  }
+  return 0.0;
 }
 
 void LaneGraph::add_step(Step step) {
@@ -157,26 +171,28 @@ void LaneGraph::add_step(Step step) {
 void LaneGraph::sort_steps() {
   std::stable_sort(steps_.begin(), steps_.end(),
                    [](const Step& a, const Step& b) { return a.from < b.from; });
-  const std::size_t all = static_cast<std::size_t>(nodes()) + 2 * passages_.size();
+  const std::size_t all = static_cast<std::size_t>(nodes()) + passages_.size();
   step_begin_.assign(all + 1, 0);
   for (const Step& step : steps_) ++step_begin_[static_cast<std::size_t>(step.from) + 1];
   for (std::size_t n = 0; n < all; ++n) step_begin_[n + 1] += step_begin_[n];
 }
 
-std::vector<Connection> LaneGraph::connect(const Port& port, TurnKinds kinds) const {
+std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) const {
   struct Option {
     double cost;
     double lead;
+    double radius;
     int node;
-    int known;
+    bool known;
   };
   const auto costs_more = [](const Option& a, const Option& b) {
-    return std::tie(a.cost, a.node, a.lead) > std::tie(b.cost, b.node, b.lead);
+    return std::tie(a.cost, a.node, a.lead, a.radius) > std::tie(b.cost, b.node, b.lead, b.radius);
   };
   const auto curve_to = [&](const Option& option) {
     const Pose2 from = advance(port.end.out, 0.0, option.lead);
-    return kinds.reeds_shepp ? shortest_reeds_shepp(from, pose(option.node), radius_)
-                             : shortest_dubins(from, pose(option.node), radius_);
+    const Pose2 to = pose(option.node);
+    return without_slivers(reversing ? shortest_reeds_shepp(from, to, option.radius)
+                                     : shortest_dubins(from, to, option.radius));
   };
   std::vector<Option> heap;
   for (double lead = 0.0; lead <= port.end.free_run; lead += kConnectionStep) {
@@ -186,7 +202,7 @@ std::vector<Connection> LaneGraph::connect(const Port& port, TurnKinds kinds) co
         const Pose2 to = pose(node);
         const double distance = (to.position() - from.position()).norm();
         const double least = std::max(distance, radius_ * std::abs(wrap_angle(to.yaw - from.yaw)));
-        heap.push_back({rate_.of(lead + least, 0), lead, node, 0});
+        heap.push_back({rate_.of(lead + least, 0), lead, radius_, node, false});
       }
     });
   }
@@ -209,9 +225,9 @@ std::vector<Connection> LaneGraph::connect(const Port& port, TurnKinds kinds) co
       continue;
     }
     const Curve curve = curve_to(option);
-    if (option.known == 0) {
+    if (!option.known) {
       option.cost = rate_.of(option.lead + curve.length(), curve.cusps());
-      option.known = 1;
+      option.known = true;
       std::push_heap(heap.begin(), heap.end(), costs_more);
       continue;
     }
@@ -224,6 +240,9 @@ std::vector<Connection> LaneGraph::connect(const Port& port, TurnKinds kinds) co
       settled.push_back(chosen.node);
       found.push_back({chosen.node, {chosen.lead, 0.0, curve}});
       costs.push_back(chosen.cost);
+    } else if (chosen.radius == radius_ && !reversing) {
+      heap.push_back({chosen.cost, chosen.lead, kGentle * radius_, chosen.node, false});
+      std::push_heap(heap.begin(), heap.end(), costs_more);
     }
   }
   return found;
@@ -233,30 +252,26 @@ void LaneGraph::add_passages(std::vector<Passage> passages) {
   passages_ = std::move(passages);
   for (std::size_t p = 0; p < passages_.size(); ++p) {
     const Passage& passage = passages_[p];
-    for (const int entry : {0, 1}) {
-      const auto& in = entry == 0 ? passage.at_first : passage.at_last;
-      const auto& out = entry == 0 ? passage.at_last : passage.at_first;
-      Step step;
-      step.passage = static_cast<int>(2 * p) + entry;
-      const int inside = nodes() + step.passage;
-      for (std::size_t c = 0; c < in.size(); ++c) {
-        step.kind = StepKind::kIntoRow;
-        step.from = in[c].node ^ 1;
-        step.to = inside;
-        step.connection = static_cast<int>(c);
-        step.length = in[c].turn.length();
-        step.cusps = in[c].turn.cusps();
-        add_step(step);
-      }
-      for (std::size_t c = 0; c < out.size(); ++c) {
-        step.kind = StepKind::kOutOfRow;
-        step.from = inside;
-        step.to = out[c].node;
-        step.connection = static_cast<int>(c);
-        step.length = passage.path.length() + out[c].turn.length();
-        step.cusps = out[c].turn.cusps();
-        add_step(step);
-      }
+    const int inside = nodes() + static_cast<int>(p);
+    Step step;
+    step.passage = static_cast<int>(p);
+    for (std::size_t c = 0; c < passage.in.size(); ++c) {
+      step.kind = StepKind::kIntoRow;
+      step.from = passage.in[c].node ^ 1;
+      step.to = inside;
+      step.connection = static_cast<int>(c);
+      step.length = passage.in[c].turn.length();
+      step.cusps = passage.in[c].turn.cusps();
+      add_step(step);
+    }
+    for (std::size_t c = 0; c < passage.out.size(); ++c) {
+      step.kind = StepKind::kOutOfRow;
+      step.from = inside;
+      step.to = passage.out[c].node;
+      step.connection = static_cast<int>(c);
+      step.length = passage.path.length() + passage.out[c].turn.length();
+      step.cusps = passage.out[c].turn.cusps();
+      add_step(step);
     }
   }
   sort_steps();
@@ -268,21 +283,17 @@ Path LaneGraph::step_path(const Step& step) const {
     // In the sense in which it was verified: the shortest curve need not be unique.
     const Pose2 from = pose(step.mirrored ? step.to ^ 1 : step.from);
     const Pose2 to = pose(step.mirrored ? step.from ^ 1 : step.to);
-    path.append(shortest_dubins(from, to, radius_), from, 0);
+    path.append(without_slivers(shortest_dubins(from, to, step.radius)), from, 0);
     return step.mirrored ? mirrored(path) : path;
   }
-  const Passage& passage = passages_[static_cast<std::size_t>(step.passage / 2)];
-  const int entry = step.passage % 2;
+  const Passage& passage = passages_[static_cast<std::size_t>(step.passage)];
   const auto at = static_cast<std::size_t>(step.connection);
-  const Path row = entry == 0 ? passage.path : mirrored(passage.path);
-  const Pose2 first = reversed(row.start_pose());
   if (step.kind == StepKind::kIntoRow) {
-    const auto& in = entry == 0 ? passage.at_first : passage.at_last;
-    return mirrored(turn_path(first, in[at].turn));
+    // The port's track, driven from the lane into the row.
+    return turn_path(pose(step.from), mirrored(passage.in[at].turn));
   }
-  const auto& out = entry == 0 ? passage.at_last : passage.at_first;
-  path.append(row);
-  path.append(turn_path(row.end_pose(), out[at].turn));
+  path.append(passage.path);
+  path.append(turn_path(passage.path.end_pose(), passage.out[at].turn));
   return path;
 }
 

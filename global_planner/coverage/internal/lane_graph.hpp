@@ -7,11 +7,11 @@
 
 namespace headland::coverage {
 
-/// An end of a way, seen outwards, and in which sense its ways are driven: a row's end is left and
-/// entered along the same tracks (kBoth), a stop is left (kForth) and entered (kBack) separately.
+/// An end of ways, seen outwards: they leave it (kForth), or enter it (kBack; as tracks, these too
+/// are laid from the port outwards).
 struct Port {
   TurnEnd end;
-  Travel travel = Travel::kBoth;
+  Travel travel = Travel::kForth;
 };
 
 /// A track from a port out to a node of the lane graph.
@@ -20,11 +20,11 @@ struct Connection {
   Turn turn;
 };
 
-/// A row that may be driven through without work, from either end to the other.
+/// A row that may be driven through without work, in one direction.
 struct Passage {
-  Path path;  ///< from its first end to its last
-  std::vector<Connection> at_first;
-  std::vector<Connection> at_last;
+  Path path;
+  std::vector<Connection> in;   ///< of the port where `path` begins
+  std::vector<Connection> out;  ///< of the port where it ends
 };
 
 /// What a way costs and is.
@@ -46,7 +46,8 @@ class LaneGraph {
   int nodes() const { return 2 * static_cast<int>(poses_.size()); }
   Pose2 pose(int node) const;
   /// The cheapest tracks from a port to nodes around it, none of which leads past another.
-  std::vector<Connection> connect(const Port& port, TurnKinds kinds) const;
+  /// @param reversing By Reeds-Shepp curves, where there is too little room to turn in forwards.
+  std::vector<Connection> connect(const Port& port, bool reversing) const;
   /// Adds rows to pass through. Once, before any query.
   void add_passages(std::vector<Passage> passages);
 
@@ -82,6 +83,7 @@ class LaneGraph {
     double length = 0.0;  // [m]
     int cusps = 0;
     StepKind kind = StepKind::kLane;
+    double radius = 0.0;    // kLane: of the curve [m]
     bool mirrored = false;  // kLane: driven from the end of the curve to its start
     int passage = -1;       // kIntoRow, kOutOfRow
     int connection = -1;
@@ -97,6 +99,7 @@ class LaneGraph {
   std::vector<Candidate> candidates() const;
   bool bypassed(const Candidate& edge) const;
   void join(const std::vector<Candidate>& candidates);
+  double fitting_radius(const Candidate& edge) const;
   void add_step(Step step);
   void sort_steps();
   Path step_path(const Step& step) const;

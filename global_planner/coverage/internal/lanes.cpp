@@ -38,7 +38,7 @@ std::vector<Pose2> poses_along(const Polyline& line, bool closed, double spacing
            (step > 0.0 ? (where - s[i - 1]) / step : 0.0) * (points[i] - points[i - 1]);
   };
   const int count = std::max(1, static_cast<int>(std::ceil(total / spacing)));
-  const double reach = 0.25 * total / count;
+  const double reach = std::min(0.3, 0.25 * total / count);
   for (int k = 0; k < count; ++k) {
     // In the middle of each stretch, so that corners of open lines keep their distance.
     const double where = (k + 0.5) * total / count;
@@ -74,6 +74,26 @@ class NearbyPoses {
   std::map<std::pair<int, int>, std::vector<Point2>> cells_;
 };
 
+// Ends of a segment, and where others meet it.
+std::vector<Point2> meetings(const Polyline& segment, const std::vector<Polyline>& others) {
+  constexpr double kTouch = 3.0;  // [m] a road may end this short of another's centre line
+  std::vector<Point2> points{segment[0], segment[1]};
+  const Point2 d = segment[1] - segment[0];
+  for (const Polyline& other : others) {
+    for (const Point2& end : other) {
+      if (distance_to_segment(end, segment[0], segment[1]) < kTouch) points.push_back(end);
+    }
+    const Point2 e = other[1] - other[0];
+    const double turn = d.x() * e.y() - d.y() * e.x();
+    if (std::abs(turn) < 1e-9) continue;
+    const Point2 gap = other[0] - segment[0];
+    const double t = (gap.x() * e.y() - gap.y() * e.x()) / turn;
+    const double u = (gap.x() * d.y() - gap.y() * d.x()) / turn;
+    if (t >= 0.0 && t <= 1.0 && u >= 0.0 && u <= 1.0) points.push_back(segment[0] + t * d);
+  }
+  return points;
+}
+
 class LaneMaker {
  public:
   LaneMaker(const FreeSpace& space, double clearance, double radius)
@@ -83,24 +103,42 @@ class LaneMaker {
         spacing_(std::clamp(1.5 * radius, 4.0, 8.0)),
         nearby_(std::max(kOpenSpacing, spacing_)) {}
 
+  // Densely around corners and junctions: there a pose must lie where the curve begins, lest the
+  // curve cut the corner.
   void along_roads(const Farm& farm) {
+    std::vector<Polyline> segments;
     for (const Road& road : farm.roads) {
-      // Straight by straight: a pose astride a corner would look into neither.
       for (std::size_t i = 1; i < road.line.size(); ++i) {
-        add(poses_along({road.line[i - 1], road.line[i]}, false, spacing_));
+        segments.push_back({road.line[i - 1], road.line[i]});
       }
+    }
+    const double fine = std::clamp(0.5 * radius_, 1.0, 2.0);
+    const int stride = std::max(1, static_cast<int>(std::lround(spacing_ / fine)));
+    for (const Polyline& segment : segments) {
+      const std::vector<Point2> corners = meetings(segment, segments);
+      const std::vector<Pose2> all = poses_along(segment, false, fine);
+      std::vector<Pose2> chosen;
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const bool at_corner =
+            std::any_of(corners.begin(), corners.end(), [&](const Point2& corner) {
+              return (corner - all[k].position()).norm() < 2.5 * radius_;
+            });
+        if (at_corner || static_cast<int>(k) % stride == stride / 2) chosen.push_back(all[k]);
+      }
+      add(chosen);
     }
   }
 
   void around_rows(const std::vector<RowBody>& rows) {
     std::vector<Polygon> bodies;
     for (const RowBody& row : rows) {
-      const std::vector<Polygon> body = widen(row.line, row.width);
+      const std::vector<Polygon> body = widen(row.line, row.spacing);
       bodies.insert(bodies.end(), body.begin(), body.end());
     }
     const double smoothing = std::max(radius_, 3.0);
-    // Far enough out for a quarter turn from a row's end; closer where there is no room for that.
-    const double wide = std::max(clearance_, radius_) + 0.2;
+    // Far enough out for a quarter turn from a row's end, and for the nose to swing; closer where
+    // there is no room for that.
+    const double wide = std::max({clearance_, radius_, space_.swing(radius_)}) + 0.2;
     std::vector<double> clearances{wide};
     for (double c = wide - 1.5; c > clearance_ + 0.5; c -= 1.5) clearances.push_back(c);
     if (wide > clearance_ + 0.2) clearances.push_back(clearance_);

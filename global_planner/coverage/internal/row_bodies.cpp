@@ -13,7 +13,6 @@
 namespace headland::coverage {
 namespace {
 
-constexpr double kSlit = 0.02;  // [m] between neighbouring bodies
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Point2 along(const Polyline& line, double part) {
@@ -93,7 +92,7 @@ Result<RowBodies> row_bodies(const Farm& farm, const std::vector<Row>& rows,
                               outline.width_m),
                   "use a narrower vehicle, or correct row_spacing_m");
     }
-    result.bodies[b].width = std::max(spacing - kSlit, 0.1);
+    result.bodies[b].spacing = std::max(spacing, 0.1);
     result.widest = std::max(result.widest, spacing);
     if (b < rows.size()) {
       result.margin = std::min(result.margin, 0.5 * (spacing - outline.width_m));

@@ -2,8 +2,9 @@
 #include "global_planner/coverage/internal/turn.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
+#include <vector>
 
 #include "core/geometry/dubins.hpp"
 #include "core/geometry/fishtail.hpp"
@@ -14,37 +15,56 @@ namespace {
 
 enum class Kind { kDubins, kFishtail, kReedsShepp };
 
+constexpr int kMostTests = 400;   // of one search
+constexpr double kSliver = 1e-9;  // [m] shorter pieces are rounding
+
 struct Candidate {
   double cost = 0.0;  // a lower bound until the curve is known
-  int number = 0;     // settles ties
+  int line = 0;       // of leads that grow together; settles ties
+  int steps = 0;      // of growth
   Kind kind = Kind::kDubins;
   bool known = false;
   Turn turn;
 };
 
 bool costs_more(const Candidate& a, const Candidate& b) {
-  return a.cost != b.cost ? a.cost > b.cost : a.number > b.number;
+  return std::tie(a.cost, a.line, a.steps) > std::tie(b.cost, b.line, b.steps);
 }
 
 Pose2 forward(const Pose2& pose, double distance) { return advance(pose, 0.0, distance); }
 
-// Leads of two ends so that they come level, or part of the way there.
-struct LeadFamily {
-  double out = 0.0;
-  double in = 0.0;
+struct Leads {
+  double out = 0.0;  // [m]
+  double in = 0.0;   // [m]
 };
 
-std::vector<LeadFamily> lead_families(const TurnEnd& a, const TurnEnd& b) {
-  std::vector<LeadFamily> families{{0.0, 0.0}};
-  const Point2 sum = a.out.heading() + b.out.heading();
-  if (sum.norm() < 1.0 || a.free_run <= 0.0 || b.free_run <= 0.0) return families;
-  // How much farther out the second end lies.
-  const double ahead = (b.out.position() - a.out.position()).dot(sum.normalized());
-  if (std::abs(ahead) < TurnSearch::kLeadStep) return families;
-  for (const double part : {0.5, 1.0}) {
-    families.push_back({std::max(0.0, part * ahead), std::max(0.0, -part * ahead)});
+// Where the leads begin to grow.
+std::vector<Leads> first_leads(const TurnEnd& from, const TurnEnd& to, const Footprint& outline) {
+  std::vector<Leads> level{{0.0, 0.0}};
+  const Point2 sum = from.out.heading() + to.out.heading();
+  if (sum.norm() > 1.0 && from.free_run > 0.0 && to.free_run > 0.0) {
+    // How much farther out the second end lies.
+    const double ahead = (to.out.position() - from.out.position()).dot(sum.normalized());
+    if (std::abs(ahead) >= TurnSearch::kLeadStep) {
+      for (const double part : {0.5, 1.0}) {
+        level.push_back({std::max(0.0, part * ahead), std::max(0.0, -part * ahead)});
+      }
+    }
   }
-  return families;
+  std::vector<Leads> all;
+  for (const Leads& leads : level) {
+    if (leads.out > from.free_run || leads.in > to.free_run) continue;
+    all.push_back(leads);
+    for (double more = TurnSearch::kLeadStep; more <= outline.rear_m;
+         more += TurnSearch::kLeadStep) {
+      if (leads.out + more <= from.free_run) all.push_back({leads.out + more, leads.in});
+    }
+    for (double more = TurnSearch::kLeadStep; more <= outline.front_m;
+         more += TurnSearch::kLeadStep) {
+      if (leads.in + more <= to.free_run) all.push_back({leads.out, leads.in + more});
+    }
+  }
+  return all;
 }
 
 int cusps_at_least(Kind kind) {
@@ -57,10 +77,10 @@ bool resolve(Candidate& candidate, const TurnEnd& a, const TurnEnd& b, double ra
   const Pose2 to = reversed(forward(b.out, candidate.turn.lead_in));
   switch (candidate.kind) {
     case Kind::kDubins:
-      candidate.turn.curve = shortest_dubins(from, to, radius);
+      candidate.turn.curve = without_slivers(shortest_dubins(from, to, radius));
       return true;
     case Kind::kReedsShepp:
-      candidate.turn.curve = shortest_reeds_shepp(from, to, radius);
+      candidate.turn.curve = without_slivers(shortest_reeds_shepp(from, to, radius));
       return candidate.turn.cusps() > 0;  // or else the Dubins curve is the same
     case Kind::kFishtail:
       break;
@@ -75,6 +95,14 @@ bool resolve(Candidate& candidate, const TurnEnd& a, const TurnEnd& b, double ra
 CostRate cost_rate(const Vehicle& vehicle, LegKind kind, Objective objective) {
   return {drive_cost(vehicle, kind, 1.0, 0).value(objective),
           drive_cost(vehicle, kind, 0.0, 1).value(objective)};
+}
+
+Curve without_slivers(const Curve& curve) {
+  Curve clean;
+  for (const CurvePiece& piece : curve) {
+    if (std::abs(piece.length) > kSliver) clean.add(piece);
+  }
+  return clean;
 }
 
 Curve mirrored(const Curve& curve) {
@@ -110,70 +138,52 @@ Path turn_path(const Pose2& out, const Turn& turn) {
   return path;
 }
 
-template <class Accept>
-void TurnSearch::search(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds, CostRate rate,
-                        Accept accept) const {
+std::optional<Turn> TurnSearch::find(const TurnEnd& from, const TurnEnd& to, TurnKinds kinds,
+                                     CostRate rate) const {
+  const std::vector<Leads> firsts = first_leads(from, to, space_.outline());
   std::vector<Candidate> heap;
-  const auto add = [&](Kind kind, double out, double in) {
-    const Pose2 from = forward(a.out, out);
-    const Pose2 to = reversed(forward(b.out, in));
-    const double least = std::max((to.position() - from.position()).norm(),
-                                  radius_ * std::abs(wrap_angle(to.yaw - from.yaw)));
-    heap.push_back({rate.of(out + least + in, cusps_at_least(kind)), static_cast<int>(heap.size()),
-                    kind, false, Turn{out, in, {}}});
+  // Growing both leads by a step never lowers the bound: it lengthens them by as much as it can
+  // bring their ends together. So a line's next candidate may wait until this one has come up.
+  const auto push = [&](int line, int steps, Kind kind) {
+    const Leads& first = firsts[static_cast<std::size_t>(line)];
+    const double grown = steps * kLeadStep;
+    if (steps > 0 && first.out + grown > from.free_run && first.in + grown > to.free_run) return;
+    const double out = std::min(first.out + grown, from.free_run);
+    const double in = std::min(first.in + grown, to.free_run);
+    const Pose2 a = forward(from.out, out);
+    const Pose2 b = reversed(forward(to.out, in));
+    const double least = std::max((b.position() - a.position()).norm(),
+                                  radius_ * std::abs(wrap_angle(b.yaw - a.yaw)));
+    heap.push_back({rate.of(out + least + in, cusps_at_least(kind)), line, steps, kind, false,
+                    Turn{out, in, {}}});
+    std::push_heap(heap.begin(), heap.end(), costs_more);
   };
-  for (const LeadFamily& family : lead_families(a, b)) {
-    if (family.out > a.free_run || family.in > b.free_run) continue;
-    for (double t = 0.0;; t += kLeadStep) {
-      const double out = std::min(family.out + t, a.free_run);
-      const double in = std::min(family.in + t, b.free_run);
-      if (kinds.dubins) add(Kind::kDubins, out, in);
-      if (kinds.fishtail) add(Kind::kFishtail, out, in);
-      if (kinds.reeds_shepp) add(Kind::kReedsShepp, out, in);
-      if (out >= a.free_run && in >= b.free_run) break;
-    }
+  for (int line = 0; line < static_cast<int>(firsts.size()); ++line) {
+    if (kinds.dubins) push(line, 0, Kind::kDubins);
+    if (kinds.fishtail) push(line, 0, Kind::kFishtail);
+    if (kinds.reeds_shepp) push(line, 0, Kind::kReedsShepp);
   }
-  std::make_heap(heap.begin(), heap.end(), costs_more);
-  while (!heap.empty()) {
+  int tests = 0;
+  while (!heap.empty() && tests < kMostTests) {
     std::pop_heap(heap.begin(), heap.end(), costs_more);
-    Candidate& next = heap.back();
-    if (!next.known && resolve(next, a, b, radius_)) {
-      next.cost = rate.of(next.turn.length(), next.turn.cusps());
+    Candidate next = heap.back();
+    heap.pop_back();
+    if (!next.known) {
+      push(next.line, next.steps + 1, next.kind);
+      if (!resolve(next, from, to, radius_)) continue;
       next.known = true;
+      next.cost = rate.of(next.turn.length(), next.turn.cusps());
+      heap.push_back(next);
       std::push_heap(heap.begin(), heap.end(), costs_more);
       continue;
     }
-    if (next.known && accept(next.turn)) return;
-    heap.pop_back();
+    ++tests;
+    if (space_.fits(forward(from.out, next.turn.lead_out), next.turn.curve, Travel::kForth,
+                    {from.row, to.row})) {
+      return next.turn;
+    }
   }
-}
-
-TurnPair TurnSearch::both_ways(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds,
-                               CostRate rate) const {
-  TurnPair found;
-  const OwnRows own{a.row, b.row};
-  search(a, b, kinds, rate, [&](const Turn& turn) {
-    const Pose2 from = forward(a.out, turn.lead_out);
-    const auto fits = [&](Travel travel) { return space_.fits(from, turn.curve, travel, own); };
-    const bool needs_forth = !found.forth;
-    const bool needs_back = !found.back;
-    const bool both = needs_forth && needs_back && fits(Travel::kBoth);
-    if (needs_forth && (both || fits(Travel::kForth))) found.forth = turn;
-    if (needs_back && (both || fits(Travel::kBack))) found.back = mirrored(turn);
-    return found.forth && found.back;
-  });
-  return found;
-}
-
-std::optional<Turn> TurnSearch::one_track(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds,
-                                          CostRate rate, Travel travel) const {
-  std::optional<Turn> found;
-  const OwnRows own{a.row, b.row};
-  search(a, b, kinds, rate, [&](const Turn& turn) {
-    if (space_.fits(forward(a.out, turn.lead_out), turn.curve, travel, own)) found = turn;
-    return found.has_value();
-  });
-  return found;
+  return std::nullopt;
 }
 
 }  // namespace headland::coverage

@@ -36,6 +36,9 @@ struct Turn {
   int cusps() const { return curve.cusps(); }
 };
 
+/// The curve less pieces that are mere rounding.
+Curve without_slivers(const Curve& curve);
+
 /// The same track, driven from its end to its start.
 Curve mirrored(const Curve& curve);
 Turn mirrored(const Turn& turn);
@@ -51,36 +54,25 @@ struct TurnKinds {
   bool reeds_shepp = false;
 };
 
-/// The cheapest turn of each sense; both are one track where that fits both ways.
-struct TurnPair {
-  std::optional<Turn> forth;  ///< from the first end to the second
-  std::optional<Turn> back;   ///< from the second to the first
-};
-
 /// Finds manoeuvres that fit.
 ///
-/// Candidates are all kinds of curve after straight leads: equal ones, or such that both ends come
-/// level (skewed row ends must first run out past their neighbours), each lengthened in steps of
-/// kLeadStep. They are taken in the order of their cost, so that the first that fits is the
-/// cheapest; curves are only computed once their lower bound max(distance, R * |change of heading|)
-/// comes up.
+/// Candidates are all kinds of curve after straight leads. The leads begin equal, or such that both
+/// ends come level (skewed row ends must first run out past their neighbours), or a little longer
+/// at one end (a long nose must be straight before it enters a row), and grow in steps of
+/// kLeadStep. Candidates are taken in the order of their cost, so that the first that fits is the
+/// cheapest; a curve is only computed once its lower bound, max(distance, radius * |change of
+/// heading|) between the leads, comes up.
 class TurnSearch {
  public:
   static constexpr double kLeadStep = 0.5;  ///< [m]
 
   TurnSearch(const FreeSpace& space, double radius) : space_(space), radius_(radius) {}
 
-  /// Both senses.
-  TurnPair both_ways(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds, CostRate rate) const;
-  /// From `a` to `b` alone, in the given sense of driving the track.
-  std::optional<Turn> one_track(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds, CostRate rate,
-                                Travel travel) const;
+  /// The cheapest turn that leaves `from` and enters `to`; none if none of them fits.
+  std::optional<Turn> find(const TurnEnd& from, const TurnEnd& to, TurnKinds kinds,
+                           CostRate rate) const;
 
  private:
-  template <class Accept>
-  void search(const TurnEnd& a, const TurnEnd& b, TurnKinds kinds, CostRate rate,
-              Accept accept) const;
-
   const FreeSpace& space_;
   double radius_;
 };
