@@ -1,0 +1,391 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "global_planner/coverage/internal/lane_graph.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/geometry/dubins.hpp"
+#include "core/geometry/reeds_shepp.hpp"
+#include "global_planner/coverage/internal/parallel.hpp"
+
+namespace headland::coverage {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDetour = 1.03;          // an edge this little shorter than two others is left out
+constexpr double kLongest = 1.5;          // curve to distance; beyond, the edge is no lane
+constexpr std::size_t kConnections = 10;  // of a port at most
+constexpr double kConnectionStep = 1.0;   // [m] of its leads
+// Beside a wall, a long nose can only be swung gently.
+constexpr double kGentle = 4.0;  // times the turning radius
+constexpr int kBlock = 1024;     // edges verified at once
+
+}  // namespace
+
+LaneGraph::LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, CostRate rate)
+    : space_(space),
+      poses_(std::move(poses)),
+      radius_(radius),
+      reach_(std::max(12.0, 5.0 * radius)),
+      rate_(rate) {
+  index_poses();
+  join(candidates());
+  sort_steps();
+}
+
+Pose2 LaneGraph::pose(int node) const {
+  const Pose2& given = poses_[static_cast<std::size_t>(node / 2)];
+  return node % 2 == 0 ? given : reversed(given);
+}
+
+void LaneGraph::index_poses() {
+  if (poses_.empty()) return;
+  Point2 low = poses_.front().position();
+  Point2 high = low;
+  for (const Pose2& pose : poses_) {
+    low = low.cwiseMin(pose.position());
+    high = high.cwiseMax(pose.position());
+  }
+  corner_ = low;
+  columns_ = static_cast<int>((high.x() - low.x()) / reach_) + 1;
+  rows_ = static_cast<int>((high.y() - low.y()) / reach_) + 1;
+  cells_.resize(static_cast<std::size_t>(columns_ * rows_));
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const Point2 at = (poses_[i].position() - corner_) / reach_;
+    cells_[static_cast<std::size_t>(static_cast<int>(at.y()) * columns_ + static_cast<int>(at.x()))]
+        .push_back(static_cast<int>(i));
+  }
+}
+
+template <class Visit>
+void LaneGraph::visit_near(const Point2& p, double distance, Visit visit) const {
+  const auto cell = [this](double offset) { return static_cast<int>(std::floor(offset / reach_)); };
+  const Point2 at = p - corner_;
+  const int last_row = std::min(rows_ - 1, cell(at.y() + distance));
+  const int last_column = std::min(columns_ - 1, cell(at.x() + distance));
+  for (int row = std::max(0, cell(at.y() - distance)); row <= last_row; ++row) {
+    for (int column = std::max(0, cell(at.x() - distance)); column <= last_column; ++column) {
+      for (const int i : cells_[static_cast<std::size_t>(row * columns_ + column)]) {
+        if ((poses_[static_cast<std::size_t>(i)].position() - p).norm() <= distance) visit(i);
+      }
+    }
+  }
+}
+
+// All edges worth a look, one of each mirrored pair, shortest first.
+std::vector<LaneGraph::Candidate> LaneGraph::candidates() const {
+  std::vector<std::vector<Candidate>> of_node(static_cast<std::size_t>(nodes()));
+  parallel_for(nodes(), [&](int from) {
+    const Pose2 start = pose(from);
+    visit_near(start.position(), reach_, [&](int i) {
+      if (i == from / 2) return;
+      for (const int to : {2 * i, 2 * i + 1}) {
+        if (std::pair(to ^ 1, from ^ 1) < std::pair(from, to)) continue;
+        const Pose2 end = pose(to);
+        const double distance = (end.position() - start.position()).norm();
+        const double longest = kLongest * distance + radius_;
+        if (radius_ * std::abs(wrap_angle(end.yaw - start.yaw)) > longest) continue;
+        const double length = dubins_length(start, end, radius_);
+        if (length <= longest) {
+          of_node[static_cast<std::size_t>(from)].push_back({length, from, to});
+        }
+      }
+    });
+  });
+  std::vector<Candidate> all;
+  for (const auto& some : of_node) all.insert(all.end(), some.begin(), some.end());
+  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
+    return std::tie(a.length, a.from, a.to) < std::tie(b.length, b.from, b.to);
+  });
+  return all;
+}
+
+bool LaneGraph::bypassed(const Candidate& edge) const {
+  const double most = kDetour * edge.length + 0.05;
+  for (const auto& [middle, first] : accepted_[static_cast<std::size_t>(edge.from)]) {
+    if (first >= most) continue;
+    for (const auto& [to, second] : accepted_[static_cast<std::size_t>(middle)]) {
+      if (to == edge.to && first + second <= most) return true;
+    }
+  }
+  return false;
+}
+
+// Edges are verified block by block in parallel; which to keep is settled one by one.
+void LaneGraph::join(const std::vector<Candidate>& candidates) {
+  accepted_.resize(static_cast<std::size_t>(nodes()));
+  std::vector<int> open;
+  std::vector<double> radii;
+  const int count = static_cast<int>(candidates.size());
+  for (int begin = 0; begin < count; begin += kBlock) {
+    open.clear();
+    for (int i = begin; i < std::min(begin + kBlock, count); ++i) {
+      if (!bypassed(candidates[static_cast<std::size_t>(i)])) open.push_back(i);
+    }
+    radii.assign(open.size(), 0.0);
+    parallel_for(static_cast<int>(open.size()), [&](int k) {
+      const auto at = static_cast<std::size_t>(k);
+      radii[at] = fitting_radius(candidates[static_cast<std::size_t>(open[at])]);
+    });
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      const Candidate& edge = candidates[static_cast<std::size_t>(open[k])];
+      if (radii[k] == 0.0 || bypassed(edge)) continue;
+      Step step;
+      step.from = edge.from;
+      step.to = edge.to;
+      step.radius = radii[k];
+      step.length = radii[k] == radius_ ? edge.length
+                                        : dubins_length(pose(edge.from), pose(edge.to), radii[k]);
+      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, step.length);
+      add_step(step);
+      if (std::pair(edge.to ^ 1, edge.from ^ 1) == std::pair(edge.from, edge.to)) continue;
+      step.from = edge.to ^ 1;
+      step.to = edge.from ^ 1;
+      step.mirrored = true;
+      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, step.length);
+      add_step(step);
+    }
+  }
+  accepted_.clear();
+}
+
+// The radius of a curve along which the outline fits both ways; 0: none.
+double LaneGraph::fitting_radius(const Candidate& edge) const {
+  const Pose2 from = pose(edge.from);
+  const Pose2 to = pose(edge.to);
+  for (const double radius : {radius_, kGentle * radius_}) {
+    const Curve curve = without_slivers(shortest_dubins(from, to, radius));
+    if (curve.length() > kLongest * (to.position() - from.position()).norm() + radius_) break;
+    if (space_.fits(from, curve, Travel::kBoth, {})) return radius;
+  }
+  return 0.0;
+}
+
+void LaneGraph::add_step(Step step) {
+  step.cost = rate_.of(step.length, step.cusps);
+  steps_.push_back(step);
+}
+
+void LaneGraph::sort_steps() {
+  std::stable_sort(steps_.begin(), steps_.end(),
+                   [](const Step& a, const Step& b) { return a.from < b.from; });
+  const std::size_t all = static_cast<std::size_t>(nodes()) + passages_.size();
+  step_begin_.assign(all + 1, 0);
+  for (const Step& step : steps_) ++step_begin_[static_cast<std::size_t>(step.from) + 1];
+  for (std::size_t n = 0; n < all; ++n) step_begin_[n + 1] += step_begin_[n];
+}
+
+std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) const {
+  struct Option {
+    double cost;
+    double lead;
+    double radius;
+    int node;
+    bool known;
+  };
+  const auto costs_more = [](const Option& a, const Option& b) {
+    return std::tie(a.cost, a.node, a.lead, a.radius) > std::tie(b.cost, b.node, b.lead, b.radius);
+  };
+  const auto curve_to = [&](const Option& option) {
+    const Pose2 from = advance(port.end.out, 0.0, option.lead);
+    const Pose2 to = pose(option.node);
+    return without_slivers(reversing ? shortest_reeds_shepp(from, to, option.radius)
+                                     : shortest_dubins(from, to, option.radius));
+  };
+  std::vector<Option> heap;
+  for (double lead = 0.0; lead <= port.end.free_run; lead += kConnectionStep) {
+    const Pose2 from = advance(port.end.out, 0.0, lead);
+    visit_near(from.position(), reach_, [&](int i) {
+      for (const int node : {2 * i, 2 * i + 1}) {
+        const Pose2 to = pose(node);
+        const double distance = (to.position() - from.position()).norm();
+        const double least = std::max(distance, radius_ * std::abs(wrap_angle(to.yaw - from.yaw)));
+        heap.push_back({rate_.of(lead + least, 0), lead, radius_, node, false});
+      }
+    });
+  }
+  std::vector<Connection> found;
+  std::vector<double> costs;  // of those found
+  std::vector<int> settled;   // nodes found, or beyond one that is
+  const auto beyond_another = [&](const Option& option) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const double on = dubins_length(pose(found[k].node), pose(option.node), radius_);
+      if (costs[k] + rate_.of(on, 0) <= kDetour * option.cost) return true;
+    }
+    return false;
+  };
+  std::make_heap(heap.begin(), heap.end(), costs_more);
+  while (!heap.empty() && found.size() < kConnections) {
+    std::pop_heap(heap.begin(), heap.end(), costs_more);
+    Option& option = heap.back();
+    if (std::find(settled.begin(), settled.end(), option.node) != settled.end()) {
+      heap.pop_back();
+      continue;
+    }
+    const Curve curve = curve_to(option);
+    if (!option.known) {
+      option.cost = rate_.of(option.lead + curve.length(), curve.cusps());
+      option.known = true;
+      std::push_heap(heap.begin(), heap.end(), costs_more);
+      continue;
+    }
+    const Option chosen = option;
+    heap.pop_back();
+    if (beyond_another(chosen)) {
+      settled.push_back(chosen.node);
+    } else if (space_.fits(advance(port.end.out, 0.0, chosen.lead), curve, port.travel,
+                           {port.end.row, -1})) {
+      settled.push_back(chosen.node);
+      found.push_back({chosen.node, {chosen.lead, 0.0, curve}});
+      costs.push_back(chosen.cost);
+    } else if (chosen.radius == radius_ && !reversing) {
+      heap.push_back({chosen.cost, chosen.lead, kGentle * radius_, chosen.node, false});
+      std::push_heap(heap.begin(), heap.end(), costs_more);
+    }
+  }
+  return found;
+}
+
+void LaneGraph::add_passages(std::vector<Passage> passages) {
+  passages_ = std::move(passages);
+  for (std::size_t p = 0; p < passages_.size(); ++p) {
+    const Passage& passage = passages_[p];
+    const int inside = nodes() + static_cast<int>(p);
+    Step step;
+    step.passage = static_cast<int>(p);
+    for (std::size_t c = 0; c < passage.in.size(); ++c) {
+      step.kind = StepKind::kIntoRow;
+      step.from = passage.in[c].node ^ 1;
+      step.to = inside;
+      step.connection = static_cast<int>(c);
+      step.length = passage.in[c].turn.length();
+      step.cusps = passage.in[c].turn.cusps();
+      add_step(step);
+    }
+    for (std::size_t c = 0; c < passage.out.size(); ++c) {
+      step.kind = StepKind::kOutOfRow;
+      step.from = inside;
+      step.to = passage.out[c].node;
+      step.connection = static_cast<int>(c);
+      step.length = passage.path.length() + passage.out[c].turn.length();
+      step.cusps = passage.out[c].turn.cusps();
+      add_step(step);
+    }
+  }
+  sort_steps();
+}
+
+Path LaneGraph::step_path(const Step& step) const {
+  Path path;
+  if (step.kind == StepKind::kLane) {
+    // In the sense in which it was verified: the shortest curve need not be unique.
+    const Pose2 from = pose(step.mirrored ? step.to ^ 1 : step.from);
+    const Pose2 to = pose(step.mirrored ? step.from ^ 1 : step.to);
+    path.append(without_slivers(shortest_dubins(from, to, step.radius)), from, 0);
+    return step.mirrored ? mirrored(path) : path;
+  }
+  const Passage& passage = passages_[static_cast<std::size_t>(step.passage)];
+  const auto at = static_cast<std::size_t>(step.connection);
+  if (step.kind == StepKind::kIntoRow) {
+    // The port's track, driven from the lane into the row.
+    return turn_path(pose(step.from), mirrored(passage.in[at].turn));
+  }
+  path.append(passage.path);
+  path.append(turn_path(passage.path.end_pose(), passage.out[at].turn));
+  return path;
+}
+
+LaneGraph::Search::Search(const LaneGraph& graph) : graph_(graph) {
+  const std::size_t all = graph.step_begin_.size() - 1;
+  cost_.resize(all);
+  length_.resize(all);
+  cusps_.resize(all);
+  last_step_.resize(all);
+}
+
+// Dijkstra's algorithm, begun at all connections of the port.
+void LaneGraph::Search::run(const std::vector<Connection>& from) {
+  std::fill(cost_.begin(), cost_.end(), kInfinity);
+  std::fill(last_step_.begin(), last_step_.end(), -1);
+  queue_.clear();
+  const auto reach = [this](int node, double cost, double length, int cusps, int step) {
+    const auto n = static_cast<std::size_t>(node);
+    if (cost >= cost_[n]) return;
+    cost_[n] = cost;
+    length_[n] = length;
+    cusps_[n] = cusps;
+    last_step_[n] = step;
+    queue_.emplace_back(cost, node);
+    std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
+  };
+  for (std::size_t c = 0; c < from.size(); ++c) {
+    const Turn& turn = from[c].turn;
+    reach(from[c].node, graph_.rate_.of(turn.length(), turn.cusps()), turn.length(), turn.cusps(),
+          -2 - static_cast<int>(c));
+  }
+  while (!queue_.empty()) {
+    std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
+    const auto [cost, node] = queue_.back();
+    queue_.pop_back();
+    const auto n = static_cast<std::size_t>(node);
+    if (cost > cost_[n]) continue;
+    for (int s = graph_.step_begin_[n]; s < graph_.step_begin_[n + 1]; ++s) {
+      const Step& step = graph_.steps_[static_cast<std::size_t>(s)];
+      reach(step.to, cost + step.cost, length_[n] + step.length, cusps_[n] + step.cusps, s);
+    }
+  }
+}
+
+int LaneGraph::Search::best_entry(const std::vector<Connection>& port) const {
+  int best = -1;
+  double least = kInfinity;
+  for (std::size_t c = 0; c < port.size(); ++c) {
+    const Turn& turn = port[c].turn;
+    const double cost = cost_[static_cast<std::size_t>(port[c].node ^ 1)] +
+                        graph_.rate_.of(turn.length(), turn.cusps());
+    if (cost < least) {
+      least = cost;
+      best = static_cast<int>(c);
+    }
+  }
+  return best;
+}
+
+WayCost LaneGraph::Search::to(const std::vector<Connection>& port) const {
+  const int best = best_entry(port);
+  if (best < 0) return {kInfinity, kInfinity, 0};
+  const Connection& entry = port[static_cast<std::size_t>(best)];
+  const auto n = static_cast<std::size_t>(entry.node ^ 1);
+  const double length = entry.turn.length();
+  const int cusps = entry.turn.cusps();
+  return {cost_[n] + graph_.rate_.of(length, cusps), length_[n] + length, cusps_[n] + cusps};
+}
+
+Path LaneGraph::Search::path_to(const Pose2& out, const std::vector<Connection>& from,
+                                const std::vector<Connection>& port) const {
+  Path path;
+  const int best = best_entry(port);
+  if (best < 0) return path;
+  const Connection& entry = port[static_cast<std::size_t>(best)];
+  std::vector<int> chain;
+  int node = entry.node ^ 1;
+  for (;;) {
+    const int s = last_step_[static_cast<std::size_t>(node)];
+    chain.push_back(s);
+    if (s < -1) break;
+    node = graph_.steps_[static_cast<std::size_t>(s)].from;
+  }
+  path.append(turn_path(out, from[static_cast<std::size_t>(-2 - chain.back())].turn));
+  for (auto s = chain.rbegin() + 1; s != chain.rend(); ++s) {
+    path.append(graph_.step_path(graph_.steps_[static_cast<std::size_t>(*s)]));
+  }
+  // The last track, begun at the node: its own mirror image.
+  const Turn last = mirrored(entry.turn);
+  const Pose2 at = graph_.pose(entry.node ^ 1);
+  path.append(turn_path(at, last));
+  return path;
+}
+
+}  // namespace headland::coverage

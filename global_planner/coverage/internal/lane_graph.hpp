@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "global_planner/coverage/internal/turn.hpp"
+
+namespace headland::coverage {
+
+/// An end of ways, seen outwards: they leave it (kForth), or enter it (kBack; as tracks, these too
+/// are laid from the port outwards).
+struct Port {
+  TurnEnd end;
+  Travel travel = Travel::kForth;
+};
+
+/// A track from a port out to a node of the lane graph.
+struct Connection {
+  int node = 0;
+  Turn turn;
+};
+
+/// A row that may be driven through without work, in one direction.
+struct Passage {
+  Path path;
+  std::vector<Connection> in;   ///< of the port where `path` begins
+  std::vector<Connection> out;  ///< of the port where it ends
+};
+
+/// What a way costs and is.
+struct WayCost {
+  double cost = 0.0;    ///< in the objective's unit
+  double length = 0.0;  ///< [m]
+  int cusps = 0;
+};
+
+/// A roadmap of poses joined by Dubins curves along which the outline fits, closed under mirroring:
+/// node 2 k + 1 is node 2 k looking back, and with every edge a -> b goes b^1 -> a^1 along the same
+/// track. Thus the way from one port to another, mirrored, is the way back.
+class LaneGraph {
+ public:
+  /// Joins the poses. Of longer edges only those are kept that are notably shorter than two
+  /// shorter ones (a greedy spanner).
+  LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, CostRate rate);
+
+  int nodes() const { return 2 * static_cast<int>(poses_.size()); }
+  Pose2 pose(int node) const;
+  /// The cheapest tracks from a port to nodes around it, none of which leads past another.
+  /// @param reversing By Reeds-Shepp curves, where there is too little room to turn in forwards.
+  std::vector<Connection> connect(const Port& port, bool reversing) const;
+  /// Adds rows to pass through. Once, before any query.
+  void add_passages(std::vector<Passage> passages);
+
+  /// Ways from one port to everywhere. An object of its own so that queries can share its memory.
+  class Search {
+   public:
+    explicit Search(const LaneGraph& graph);
+    void run(const std::vector<Connection>& from);
+    /// The way on to a port: from there its mirrored connections lead in; infinite if none.
+    WayCost to(const std::vector<Connection>& port) const;
+    /// The way itself, from `out`, a pose at the port where the search began.
+    Path path_to(const Pose2& out, const std::vector<Connection>& from,
+                 const std::vector<Connection>& port) const;
+
+   private:
+    int best_entry(const std::vector<Connection>& port) const;
+
+    const LaneGraph& graph_;
+    std::vector<double> cost_;
+    std::vector<double> length_;
+    std::vector<int> cusps_;
+    std::vector<int> last_step_;  // -1: none; below: -2 - index of the first connection
+    std::vector<std::pair<double, int>> queue_;
+  };
+
+ private:
+  enum class StepKind { kLane, kIntoRow, kOutOfRow };
+  // An edge in one direction.
+  struct Step {
+    int from = 0;
+    int to = 0;
+    double cost = 0.0;
+    double length = 0.0;  // [m]
+    int cusps = 0;
+    StepKind kind = StepKind::kLane;
+    double radius = 0.0;    // kLane: of the curve [m]
+    bool mirrored = false;  // kLane: driven from the end of the curve to its start
+    int passage = -1;       // kIntoRow, kOutOfRow
+    int connection = -1;
+  };
+  struct Candidate {
+    double length;
+    int from;
+    int to;
+  };
+  void index_poses();
+  template <class Visit>
+  void visit_near(const Point2& p, double distance, Visit visit) const;
+  std::vector<Candidate> candidates() const;
+  bool bypassed(const Candidate& edge) const;
+  void join(const std::vector<Candidate>& candidates);
+  double fitting_radius(const Candidate& edge) const;
+  void add_step(Step step);
+  void sort_steps();
+  Path step_path(const Step& step) const;
+
+  const FreeSpace& space_;
+  std::vector<Pose2> poses_;
+  double radius_;
+  double reach_;  // longest distance of an edge [m]
+  CostRate rate_;
+  std::vector<Passage> passages_;
+  std::vector<Step> steps_;      // by their beginning
+  std::vector<int> step_begin_;  // of node n: [step_begin_[n], step_begin_[n + 1])
+  std::vector<std::vector<std::pair<int, double>>> accepted_;  // while joining: to, length
+  // Poses in a grid of cells `reach_` wide.
+  Point2 corner_{0.0, 0.0};
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::vector<int>> cells_;
+};
+
+}  // namespace headland::coverage

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "global_planner/coverage/transitions.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "global_planner/coverage/internal/lane_graph.hpp"
+#include "global_planner/coverage/internal/lanes.hpp"
+#include "global_planner/coverage/internal/parallel.hpp"
+#include "global_planner/coverage/internal/row_bodies.hpp"
+
+namespace headland {
+
+using namespace coverage;
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLaneSlack = 0.15;         // [m] by which lanes keep more than the margin
+constexpr double kFarthestTurnR = 6.0;      // turns are sought up to this many radii
+constexpr double kFarthestTurnRows = 12.0;  // or row spacings, but
+constexpr double kFarthestTurnM = 40.0;     // [m] for the latter
+constexpr int kPassagesPerParcel = 6;
+
+const char* compass(double yaw) {
+  constexpr std::array names{"east", "north-east", "north", "north-west",
+                             "west", "south-west", "south", "south-east"};
+  const int k = static_cast<int>(std::lround(yaw / (kPi / 4.0)));
+  return names[static_cast<std::size_t>(((k % 8) + 8) % 8)];
+}
+
+enum class WayType : std::int8_t { kNone, kTurn, kLanes, kThroughRow };
+
+// How one site is reached from another.
+struct Way {
+  double length = kInfinity;  // [m]
+  int index = -1;  // kTurn: of the turn; kThroughRow: the end of the row by which it is entered
+  std::int16_t cusps = 0;
+  WayType type = WayType::kNone;
+};
+
+}  // namespace
+
+struct Transitions::Impl {
+  Impl(const Farm& farm, const std::vector<Row>& rows_in, const std::vector<Site>& stops,
+       const Vehicle& vehicle_in, const TransitionOptions& options_in, const RowBodies& bodies);
+
+  // Each site has a port where it is left and one where it is entered.
+  int ports() const { return static_cast<int>(ports_.size()); }
+  static int out_port(int site) { return 2 * site; }
+  static int in_port(int site) { return 2 * site + 1; }
+  const Port& port(int p) const { return ports_[static_cast<std::size_t>(p)]; }
+  Way& way(int from, int to) {
+    return ways[static_cast<std::size_t>(from) * sites.size() + static_cast<std::size_t>(to)];
+  }
+  const Way& way(int from, int to) const {
+    return ways[static_cast<std::size_t>(from) * sites.size() + static_cast<std::size_t>(to)];
+  }
+
+  void add_ports();
+  void find_turns();
+  std::vector<int> turn_partners(int from) const;
+  void join_lanes(const Farm& farm, const std::vector<Polygon>& drivable, const RowBodies& bodies);
+  void add_passages(const RowBodies& bodies);
+  void find_lane_ways();
+  void offer_lane_way(int from, int to, const WayCost& found);
+  void find_ways_through_rows();
+  std::optional<Error> shut_in_row() const;
+  LegKind kind(const Way& w, int from, int to) const;
+  Path lane_path(int from, int to) const;
+  Path path(int from, int to) const;
+
+  std::vector<Row> rows;
+  std::vector<Site> sites;
+  Vehicle vehicle;
+  TransitionOptions options;
+  int ends = 0;  // of rows
+  double radius;
+  double spacing;
+  CostRate turn_rate;
+  CostRate transit_rate;
+  FreeSpace space;
+  std::vector<Port> ports_;
+  std::vector<Turn> turns;
+  std::unique_ptr<LaneGraph> lanes;
+  std::vector<std::vector<Connection>> connections;  // of ports
+  std::vector<Path> row_paths;                       // from first to last end
+  std::vector<Way> ways;
+};
+
+Transitions::Impl::Impl(const Farm& farm, const std::vector<Row>& rows_in,
+                        const std::vector<Site>& stops, const Vehicle& vehicle_in,
+                        const TransitionOptions& options_in, const RowBodies& bodies)
+    : rows(rows_in),
+      vehicle(vehicle_in),
+      options(options_in),
+      ends(2 * static_cast<int>(rows_in.size())),
+      radius(vehicle_in.turning_radius()),
+      spacing(bodies.widest),
+      turn_rate(cost_rate(vehicle_in, LegKind::kTurn, options_in.objective)),
+      transit_rate(cost_rate(vehicle_in, LegKind::kTransit, options_in.objective)),
+      space(drivable_area(farm), bodies.bodies, vehicle_in.footprint, options_in.margin_m,
+            bodies.margin) {
+  for (const Row& row : rows) {
+    row_paths.push_back(row_path(row, 0, radius));
+    const Path back = row_path(row, 1, radius);
+    const Pose2 first_out = back.end_pose();
+    const Pose2 last_out = row_paths.back().end_pose();
+    sites.push_back({first_out, row_paths.back().start_pose(),
+                     fmt::format("row {}, {} end", row.id, compass(first_out.yaw))});
+    sites.push_back({last_out, back.start_pose(),
+                     fmt::format("row {}, {} end", row.id, compass(last_out.yaw))});
+  }
+  sites.insert(sites.end(), stops.begin(), stops.end());
+  ways.resize(sites.size() * sites.size());
+  add_ports();
+  find_turns();
+  join_lanes(farm, space.drivable(), bodies);
+  find_lane_ways();
+  find_ways_through_rows();
+}
+
+void Transitions::Impl::add_ports() {
+  const auto add = [this](const Pose2& out, int row, Travel travel) {
+    const double run =
+        space.free_run(out, options.max_lead_m, TurnSearch::kLeadStep, travel, {row, -1});
+    ports_.push_back({{out, row, run}, travel});
+  };
+  for (int s = 0; s < static_cast<int>(sites.size()); ++s) {
+    const Site& site = sites[static_cast<std::size_t>(s)];
+    add(site.depart, s < ends ? s / 2 : space.row_at(site.depart.position()), Travel::kForth);
+    add(reversed(site.arrive), s < ends ? s / 2 : space.row_at(site.arrive.position()),
+        Travel::kBack);
+  }
+}
+
+// Sites that a single manoeuvre may lead to: near, and neither far behind the other.
+std::vector<int> Transitions::Impl::turn_partners(int from) const {
+  std::vector<int> partners;
+  const double farthest =
+      std::max(kFarthestTurnR * radius, std::min(kFarthestTurnRows * spacing, kFarthestTurnM));
+  const TurnEnd& a = port(out_port(from)).end;
+  for (int to = 0; to < static_cast<int>(sites.size()); ++to) {
+    if (to == from || (to < ends && to / 2 == from / 2)) continue;
+    const TurnEnd& b = port(in_port(to)).end;
+    const Point2 d = b.out.position() - a.out.position();
+    if (d.squaredNorm() > farthest * farthest || b.free_run < 0.0) continue;
+    if (d.dot(a.out.heading()) < -farthest / 2.0 || -d.dot(b.out.heading()) < -farthest / 2.0) {
+      continue;
+    }
+    partners.push_back(to);
+  }
+  return partners;
+}
+
+void Transitions::Impl::find_turns() {
+  struct Found {
+    int to;
+    Turn turn;
+  };
+  std::vector<std::vector<Found>> found(sites.size());
+  const bool reverses = vehicle.can_reverse;
+  const TurnKinds kinds{true, reverses && options.fishtail, reverses && options.reeds_shepp};
+  const TurnSearch search(space, radius);
+  // Alike in front and behind, a vehicle drives the mirror image of each turn between rows back.
+  const bool alike = vehicle.footprint.front_m == vehicle.footprint.rear_m;
+  parallel_for(static_cast<int>(sites.size()), [&](int from) {
+    const TurnEnd& a = port(out_port(from)).end;
+    if (a.free_run < 0.0) return;
+    for (const int to : turn_partners(from)) {
+      const bool rows_both = from < ends && to < ends;
+      if (alike && rows_both && to < from) continue;
+      const auto turn =
+          search.find(a, port(in_port(to)).end, kinds, rows_both ? turn_rate : transit_rate);
+      if (turn) found[static_cast<std::size_t>(from)].push_back({to, *turn});
+    }
+  });
+  const auto enter = [this](int from, int to, const Turn& turn) {
+    way(from, to) = {turn.length(), static_cast<int>(turns.size()),
+                     static_cast<std::int16_t>(turn.cusps()), WayType::kTurn};
+    turns.push_back(turn);
+  };
+  for (int from = 0; from < static_cast<int>(sites.size()); ++from) {
+    for (const Found& f : found[static_cast<std::size_t>(from)]) {
+      enter(from, f.to, f.turn);
+      if (alike && from < ends && f.to < ends) enter(f.to, from, mirrored(f.turn));
+    }
+  }
+}
+
+void Transitions::Impl::join_lanes(const Farm& farm, const std::vector<Polygon>& drivable,
+                                   const RowBodies& bodies) {
+  const double clearance = 0.5 * vehicle.footprint.width_m + options.margin_m + kLaneSlack;
+  lanes = std::make_unique<LaneGraph>(
+      space, lane_poses(farm, drivable, bodies.bodies, space, clearance, radius), radius,
+      transit_rate);
+  connections.resize(ports_.size());
+  parallel_for(ports(), [this](int p) {
+    if (port(p).end.free_run < 0.0) return;
+    auto& found = connections[static_cast<std::size_t>(p)];
+    found = lanes->connect(port(p), false);
+    // Too little room to turn forwards onto a lane.
+    if (found.size() < 2 && vehicle.can_reverse && options.reeds_shepp) {
+      const auto reversing = lanes->connect(port(p), true);
+      found.insert(found.end(), reversing.begin(), reversing.end());
+    }
+  });
+  add_passages(bodies);
+}
+
+// A few rows of each parcel, evenly spread among those that the lanes reach at both ends, serve
+// as lanes across it.
+void Transitions::Impl::add_passages(const RowBodies& bodies) {
+  std::vector<Passage> passages;
+  const auto connected = [this](int port) -> const std::vector<Connection>& {
+    return connections[static_cast<std::size_t>(port)];
+  };
+  for (const std::vector<int>& block : bodies.parcels) {
+    for (const int entry : {0, 1}) {
+      std::vector<int> open;
+      for (const int r : block) {
+        if (!connected(in_port(2 * r + entry)).empty() &&
+            !connected(out_port(2 * r + 1 - entry)).empty()) {
+          open.push_back(r);
+        }
+      }
+      const int count = static_cast<int>(open.size());
+      const int wanted = std::min(count, kPassagesPerParcel);
+      for (int k = 0; k < wanted; ++k) {
+        const int r =
+            open[static_cast<std::size_t>(wanted == 1 ? 0 : k * (count - 1) / (wanted - 1))];
+        passages.push_back({row_path(rows[static_cast<std::size_t>(r)], entry, radius),
+                            connected(in_port(2 * r + entry)),
+                            connected(out_port(2 * r + 1 - entry))});
+      }
+    }
+  }
+  lanes->add_passages(std::move(passages));
+}
+
+void Transitions::Impl::find_lane_ways() {
+  parallel_for(static_cast<int>(sites.size()), [this](int from) {
+    const auto& begin = connections[static_cast<std::size_t>(out_port(from))];
+    if (begin.empty()) return;
+    LaneGraph::Search search(*lanes);
+    search.run(begin);
+    for (int to = 0; to < static_cast<int>(sites.size()); ++to) {
+      const auto& end = connections[static_cast<std::size_t>(in_port(to))];
+      if (to != from && !end.empty()) offer_lane_way(from, to, search.to(end));
+    }
+  });
+}
+
+void Transitions::Impl::offer_lane_way(int from, int to, const WayCost& found) {
+  Way& w = way(from, to);
+  if (found.cost == kInfinity) return;
+  // On equal terms: a lane way must not win over a turn merely because lanes are driven faster.
+  const CostRate& rate = kind(w, from, to) == LegKind::kTurn ? turn_rate : transit_rate;
+  if (w.type != WayType::kNone &&
+      rate.of(w.length, w.cusps) <= rate.of(found.length, found.cusps)) {
+    return;
+  }
+  w = {found.length, -1, static_cast<std::int16_t>(found.cusps), WayType::kLanes};
+}
+
+// Leave by a turn into another row, drive through it, and turn into the wanted one at its far end:
+// how opposite ends are joined where no lane goes around.
+void Transitions::Impl::find_ways_through_rows() {
+  std::vector<std::vector<int>> turns_from(static_cast<std::size_t>(ends));
+  for (int a = 0; a < ends; ++a) {
+    for (int b = 0; b < ends; ++b) {
+      if (way(a, b).type == WayType::kTurn) turns_from[static_cast<std::size_t>(a)].push_back(b);
+    }
+  }
+  for (int a = 0; a < ends; ++a) {
+    for (const int in : turns_from[static_cast<std::size_t>(a)]) {
+      const Way to_row = way(a, in);
+      const double through = row_paths[static_cast<std::size_t>(in / 2)].length();
+      for (const int b : turns_from[static_cast<std::size_t>(in ^ 1)]) {
+        if (b / 2 == a / 2) continue;
+        const Way from_row = way(in ^ 1, b);
+        const double length = to_row.length + through + from_row.length;
+        const int cusps = to_row.cusps + from_row.cusps;
+        Way& w = way(a, b);
+        if (w.type == WayType::kTurn) continue;
+        if (w.type != WayType::kNone &&
+            transit_rate.of(w.length, w.cusps) <= transit_rate.of(length, cusps)) {
+          continue;
+        }
+        w = {length, in, static_cast<std::int16_t>(cusps), WayType::kThroughRow};
+      }
+    }
+  }
+}
+
+std::optional<Error> Transitions::Impl::shut_in_row() const {
+  const int count = static_cast<int>(sites.size());
+  for (int e = 0; e < ends; ++e) {
+    bool others = false;
+    bool left = false;
+    bool entered = false;
+    for (int other = 0; other < count && !(left && entered); ++other) {
+      if (other / 2 == e / 2 && other < ends) continue;
+      others = true;
+      left = left || way(e, other).type != WayType::kNone;
+      entered = entered || way(other, e).type != WayType::kNone;
+    }
+    if (!others || (left && entered)) continue;
+    const Pose2& out = sites[static_cast<std::size_t>(e)].depart;
+    const Footprint& shape = vehicle.footprint;
+    const double most = 50.0;
+    const double ahead = space.room_ahead(out, most, {e / 2, -1});
+    return Error{
+        ErrorCode::kTurnDoesNotFit,
+        fmt::format("{} at ({:.1f}, {:.1f}): no way {} for a turning radius of {:.2f} m and an "
+                    "outline of {:.1f} x {:.1f} m with {:.1f} m of room beyond the row's end",
+                    sites[static_cast<std::size_t>(e)].name, out.x, out.y, left ? "in" : "out",
+                    radius, shape.front_m + shape.rear_m, shape.width_m, ahead),
+        vehicle.can_reverse ? "widen the headland (headland_width_m, headland_outside_m), or use a "
+                              "tighter vehicle"
+                            : "widen the headland (headland_width_m, headland_outside_m), allow "
+                              "reversing, or use a tighter vehicle",
+        {}};
+  }
+  return std::nullopt;
+}
+
+LegKind Transitions::Impl::kind(const Way& w, int from, int to) const {
+  return w.type == WayType::kTurn && from < ends && to < ends ? LegKind::kTurn : LegKind::kTransit;
+}
+
+Path Transitions::Impl::lane_path(int from, int to) const {
+  const auto& begin = connections[static_cast<std::size_t>(out_port(from))];
+  LaneGraph::Search search(*lanes);
+  search.run(begin);
+  return search.path_to(port(out_port(from)).end.out, begin,
+                        connections[static_cast<std::size_t>(in_port(to))]);
+}
+
+Path Transitions::Impl::path(int from, int to) const {
+  const Way& w = way(from, to);
+  switch (w.type) {
+    case WayType::kNone:
+      break;
+    case WayType::kTurn:
+      return turn_path(sites[static_cast<std::size_t>(from)].depart,
+                       turns[static_cast<std::size_t>(w.index)]);
+    case WayType::kLanes:
+      return lane_path(from, to);
+    case WayType::kThroughRow: {
+      Path through = path(from, w.index);
+      through.append(row_path(rows[static_cast<std::size_t>(w.index / 2)], w.index % 2, radius));
+      through.append(path(w.index ^ 1, to));
+      return through;
+    }
+  }
+  return {};
+}
+
+Result<Transitions> Transitions::build(const Farm& farm, const std::vector<Row>& rows,
+                                       const std::vector<Site>& stops, const Vehicle& vehicle,
+                                       const TransitionOptions& options) {
+  const Result<RowBodies> bodies = row_bodies(farm, rows, vehicle.footprint, options.margin_m);
+  if (!bodies) return tl::unexpected<Error>(bodies.error());
+  auto impl = std::make_unique<Impl>(farm, rows, stops, vehicle, options, *bodies);
+  if (std::optional<Error> error = impl->shut_in_row()) return tl::unexpected<Error>(*error);
+  return Transitions(std::move(impl));
+}
+
+Transitions::Transitions(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Transitions::~Transitions() = default;
+Transitions::Transitions(Transitions&&) noexcept = default;
+Transitions& Transitions::operator=(Transitions&&) noexcept = default;
+
+int Transitions::sites() const { return static_cast<int>(impl_->sites.size()); }
+
+const Site& Transitions::site(int index) const {
+  return impl_->sites[static_cast<std::size_t>(index)];
+}
+
+DriveCost Transitions::cost(int from, int to) const {
+  const Way& w = impl_->way(from, to);
+  if (w.type == WayType::kNone) return {kInfinity, kInfinity, kInfinity};
+  return drive_cost(impl_->vehicle, kind(from, to), w.length, w.cusps);
+}
+
+LegKind Transitions::kind(int from, int to) const {
+  return impl_->kind(impl_->way(from, to), from, to);
+}
+
+Path Transitions::path(int from, int to) const { return impl_->path(from, to); }
+
+Eigen::MatrixXd Transitions::matrix() const {
+  Eigen::MatrixXd costs(sites(), sites());
+  for (int to = 0; to < sites(); ++to) {
+    for (int from = 0; from < sites(); ++from) {
+      costs(from, to) = cost(from, to).value(impl_->options.objective);
+    }
+  }
+  return costs;
+}
+
+}  // namespace headland
