@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/base/result.hpp"
+#include "core/geometry/polygon.hpp"
+
+namespace headland {
+
+/// A number (in the unit stated beside it) or a word; a number that is not finite is shown as "–".
+using ReportValue = std::variant<double, std::string>;
+
+/// A figure of the summary.
+struct ReportTile {
+  std::string label;
+  ReportValue value;
+  std::string unit{};
+  std::string hint{};  ///< one line on what it means; may be empty
+};
+
+/// One thing on the map. Kinds the page knows: parcel, headland, road, keep_out, row, row_done,
+/// gate, poi, charger, plan (the planned path, one feature per leg).
+struct ReportFeature {
+  std::string kind;
+  std::string id{};
+  std::string name{};
+  /// Point and line: exactly one list of points. Polygon: the outer ring, then the holes.
+  std::vector<Polyline> rings;  ///< [m, map]
+  enum class Shape { kPoint, kLine, kPolygon } shape = Shape::kLine;
+  std::optional<int> leg{};  ///< of the plan; legs are the numbers of Path
+  std::string leg_kind{};    ///< row, turn, transit or charge
+
+  static ReportFeature point(std::string kind, std::string name, const Point2& position);
+  static ReportFeature line(std::string kind, std::string name, Polyline line);
+  static ReportFeature polygon(std::string kind, std::string name, const Polygon& polygon);
+};
+
+/// Columns over the driven (or planned) distance, of equal length; a column that was not measured
+/// stays empty.
+struct ReportSeries {
+  std::vector<double> s_m;           ///< driven distance [m], never falling
+  std::vector<double> x_m;           ///< east [m, map]
+  std::vector<double> y_m;           ///< north [m, map]
+  std::vector<double> error_m;       ///< cross-track, left positive [m]
+  std::vector<double> steering_deg;  ///< left positive [deg]
+  std::vector<double> soc;           ///< state of charge, 0 to 1
+  std::vector<double> speed_mps;     ///< [m/s]
+  std::vector<int> leg;
+};
+
+struct ReportTable {
+  struct Column {
+    std::string name;
+    std::string unit{};
+  };
+  std::string title;
+  /// A column named "leg" makes its numbers links to that leg on the map.
+  std::vector<Column> columns;
+  std::vector<std::vector<ReportValue>> rows;
+};
+
+struct ReportPlot {
+  struct Series {
+    std::string name;
+    std::vector<double> x;
+    std::vector<double> y;
+    bool points = false;  ///< dots instead of a line
+  };
+  std::string title;
+  std::string x_label;  ///< with its unit
+  std::string y_label;  ///< with its unit
+  bool log_y = false;
+  std::vector<Series> series;
+};
+
+enum class ReportKind { kPlan, kRun, kStudy };
+
+/// All that report.html shows. An empty part takes no room on the page.
+struct Report {
+  std::string title;
+  ReportKind kind = ReportKind::kPlan;
+  std::string status;  ///< a word: optimal, feasible, completed, failed, ...
+  std::string version;
+  std::uint64_t seed = 0;
+  std::string config_hash;
+  std::string config_yaml;
+  std::vector<ReportTile> tiles;
+  std::vector<ReportFeature> features;
+  ReportSeries series;
+  std::optional<double> reserve_soc;
+  std::vector<ReportTable> tables;
+  std::vector<ReportPlot> plots;
+};
+
+/// Series longer than this are thinned out before they are written.
+inline constexpr int kMaxReportPoints = 20000;
+
+/// Indices of at most `count` samples that keep the shape of a series: the first and last, and of
+/// each of equal stretches the first and the one of largest |value| (`values` may be empty).
+/// Requires count >= 4.
+std::vector<int> thin_out(int size, const std::vector<double>& values, int count);
+
+/// The report as JSON text: lengths to the millimetre, free numbers to six digits.
+/// Error kInternal if the columns of the series differ in length.
+Result<std::string> report_json(const Report& report);
+
+/// The page around a JSON text: one file that needs no network.
+std::string report_html(std::string_view title, std::string_view json);
+
+/// Writes report.json and report.html into `directory` (made if absent), each first beside its
+/// place and then moved there, so that a reader never sees half a file. Error kFileNotWritable.
+Result<void> write_report(const Report& report, const std::filesystem::path& directory);
+
+}  // namespace headland

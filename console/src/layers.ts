@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map's layers, bottom first: how each is drawn and called.
+import {Feature, LegKind} from './types';
+
+export type Mark = 'square'|'circle'|'diamond'|'bolt';
+
+export interface Layer {
+  key: string;
+  label: string;
+  fill?: string;   // names of colours in the style sheet
+  stroke?: string;
+  width?: number;  // [px]
+  dash?: number[]; // [px]
+  mark?: Mark;     // of points
+}
+
+export const kLayers: Layer[] = [
+  {key: 'headland', label: 'Drivable area', fill: 'map-drivable'},
+  {key: 'road', label: 'Roads', stroke: 'map-road', width: 3},
+  {key: 'parcel', label: 'Parcels', fill: 'map-parcel', stroke: 'map-parcel-edge', width: 1.2},
+  {key: 'keep_out', label: 'Keep-outs', fill: 'map-keep-out', stroke: 'map-keep-out-edge', width: 1},
+  {key: 'row', label: 'Rows', stroke: 'map-row', width: 1.2},
+  {key: 'row_done', label: 'Rows done', stroke: 'map-row-done', width: 2.4},
+  {key: 'plan_row', label: 'Plan: rows', stroke: 'leg-row', width: 1.8},
+  {key: 'plan_turn', label: 'Plan: turns', stroke: 'leg-turn', width: 1.8},
+  {key: 'plan_transit', label: 'Plan: transit', stroke: 'leg-transit', width: 1.8},
+  {key: 'plan_charge', label: 'Plan: to charge', stroke: 'leg-charge', width: 1.8, dash: [6, 4]},
+  {key: 'driven', label: 'Driven', stroke: 'driven', width: 2.6},
+  {key: 'gate', label: 'Gates', stroke: 'map-gate', mark: 'square'},
+  {key: 'poi', label: 'Places', stroke: 'map-poi', mark: 'circle'},
+  {key: 'charger', label: 'Chargers', stroke: 'leg-charge', mark: 'bolt'},
+];
+
+const kOther: Layer = {key: 'other', label: 'Other', stroke: 'muted', width: 1, mark: 'diamond'};
+
+const kLegLayers: Record<LegKind, string> = {
+  row: 'plan_row',
+  turn: 'plan_turn',
+  transit: 'plan_transit',
+  charge: 'plan_charge',
+};
+
+const kAliases: Record<string, string> = {drivable: 'headland', row_parcel: 'parcel', free_parcel: 'parcel'};
+
+export function layer_of(feature: Feature): Layer {
+  const kind = kAliases[feature.kind] ?? feature.kind;
+  const key = kind === 'plan' ? kLegLayers[feature.leg_kind ?? 'transit'] ?? 'plan_transit' : kind;
+  return kLayers.find((layer) => layer.key === key) ?? kOther;
+}
+
+/// The layers that a list of features uses, bottom first.
+export function layers_of(features: Feature[], driven: boolean): Layer[] {
+  const used = new Set(features.map(layer_of));
+  return [...kLayers, kOther].filter((layer) => used.has(layer) || (driven && layer.key === 'driven'));
+}
+
+/// Rings or lines of a feature; a point is a line of one position.
+export function lines_of(feature: Feature): [number, number][][] {
+  switch (feature.type) {
+    case 'Point':
+      return [[feature.coordinates as [number, number]]];
+    case 'LineString':
+      return [feature.coordinates as [number, number][]];
+    case 'Polygon':
+      return feature.coordinates as [number, number][][];
+  }
+}

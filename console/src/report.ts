@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together from the JSON that stands in it.
+import {current_theme} from './color';
+import {element} from './dom';
+import {free_plot} from './free_plots';
+import {Link} from './link';
+import {MapView} from './map';
+import {run_plots} from './run_plots';
+import {page_head, tiles} from './summary';
+import {table} from './table';
+import {Report} from './types';
+
+type Choice = 'auto'|'light'|'dark';
+const kChoices: Choice[] = ['auto', 'light', 'dark'];
+
+function choose_theme(choice: Choice): void {
+  if (choice === 'auto') document.documentElement.removeAttribute('data-theme');
+  else document.documentElement.setAttribute('data-theme', choice);
+}
+
+function build(report: Report): void {
+  let theme = current_theme();
+  const get_theme = () => theme;
+  const repaints: (() => void)[] = [];
+  const repaint = () => {
+    theme = current_theme();
+    for (const paint of repaints) paint();
+  };
+
+  const asked = new URLSearchParams(location.search).get('theme') as Choice;
+  let choice: Choice = kChoices.includes(asked) ? asked : 'auto';
+  choose_theme(choice);
+  theme = current_theme();
+  const button = element('button', {type: 'button', class: 'quiet theme'}, `Theme: ${choice}`);
+  button.addEventListener('click', () => {
+    choice = kChoices[(kChoices.indexOf(choice) + 1) % kChoices.length]!;
+    button.textContent = `Theme: ${choice}`;
+    choose_theme(choice);
+    repaint();
+  });
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
+  addEventListener('beforeprint', () => (choose_theme('light'), repaint()));
+  addEventListener('afterprint', () => (choose_theme(choice), repaint()));
+
+  const link = new Link();
+  const page: Node[] = [page_head(report, button)];
+  if (report.tiles.length) page.push(tiles(report.tiles));
+  const plots = run_plots(report.series, report.reserve_soc, link, get_theme);
+  const has_map = report.map.features.length > 0 || report.series.x_m.length > 0;
+  const row: Node[] = [];
+  if (has_map) {
+    const map = new MapView(report.map.features, report.series, link, get_theme);
+    repaints.push(() => map.repaint());
+    row.push(map.root);
+  }
+  if (plots) {
+    repaints.push(plots.repaint);
+    row.push(plots.root);
+  }
+  if (row.length) page.push(element('div', {class: row.length > 1 ? 'pair' : 'single'}, ...row));
+  const grid = element('div', {class: 'plots'});
+  for (const data of report.plots) {
+    const plot = free_plot(data, get_theme);
+    repaints.push(plot.repaint);
+    grid.append(plot.root);
+  }
+  if (report.plots.length) page.push(grid);
+  for (const data of report.tables) page.push(table(data, has_map ? link : null));
+  if (report.config_yaml) {
+    page.push(element('details', {class: 'card'}, element('summary', {}, 'Effective configuration'),
+        element('pre', {tabindex: '0'}, report.config_yaml)));
+  }
+  document.getElementById('report')!.replaceChildren(...page);
+}
+
+try {
+  build(JSON.parse(document.getElementById('data')!.textContent ?? '') as Report);
+} catch (error) {
+  document.getElementById('report')!.replaceChildren(
+      element('p', {class: 'failure', role: 'alert'}, `This report cannot be shown: ${String(error)}`));
+  throw error;
+}
