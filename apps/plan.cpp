@@ -4,6 +4,7 @@
 #include "apps/command.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
+#include "apps/report_content.hpp"
 
 namespace headland::apps {
 
@@ -11,12 +12,11 @@ int plan_command(const CommonOptions& options) {
   const auto planned = plan_from_file(options);
   if (!planned) return report_error(planned.error(), options);
   const std::string summary = summary_json(planned->plan, planned->planning_s, planned->stamp);
-  auto files = std::map<std::string, std::string>{
-      {"summary.json", summary},
-      {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)}};
-  if (auto written = write_files(options.out, files); !written) {
-    return report_error(written.error(), options);
-  }
+  const auto written = write_outputs(
+      options.out, plan_report(*planned),
+      {{"summary.json", summary},
+       {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)}});
+  if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", summary);
   } else {

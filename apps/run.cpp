@@ -8,6 +8,7 @@
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
 #include "apps/recording.hpp"
+#include "apps/report_content.hpp"
 #include "apps/run_output.hpp"
 
 namespace headland::apps {
@@ -42,15 +43,14 @@ int run_command(const CommonOptions& options, double realtime) {
   const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
 
   const std::string metrics = metrics_json(run, real_time_factor, planned->stamp);
-  const auto files = std::map<std::string, std::string>{
-      {"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
-      {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
-      {"metrics.json", metrics},
-      {"trace.csv", trace_csv(run)},
-      {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm)}};
-  if (auto written = write_files(options.out, files); !written) {
-    return report_error(written.error(), options);
-  }
+  const auto written = write_outputs(
+      options.out, run_report(*planned, run, real_time_factor),
+      {{"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
+       {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
+       {"metrics.json", metrics},
+       {"trace.csv", trace_csv(run)},
+       {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm)}});
+  if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", metrics);
   } else {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/report_content.hpp"
 #include "apps/study_output.hpp"
 #include "sim/lab/ebs221_study.hpp"
 #include "sim/lab/polito_study.hpp"
@@ -11,9 +13,11 @@ namespace headland::apps {
 namespace {
 
 template <class Config, class RunStudy>
-Result<FinishedStudy> run_as(const config::Node& node, int max_episodes, const RunStudy& run_study) {
+Result<FinishedStudy> run_as(const config::Node& node, int max_episodes,
+                             const RunStudy& run_study) {
   Config config;
-  if (auto read = config::read_into(node, config); !read) return tl::unexpected<Error>(read.error());
+  if (auto read = config::read_into(node, config); !read)
+    return tl::unexpected<Error>(read.error());
   if constexpr (requires { config.runs_count; }) {
     if (max_episodes > 0) config.runs_count = std::min(config.runs_count, max_episodes);
   }
@@ -48,11 +52,10 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   if (!finished) return report_error(finished.error(), options);
 
   const std::string results = results_json(*finished);
-  const auto files = std::map<std::string, std::string>{
-      {"results.json", results}, {"episodes.csv", cells_csv(finished->result)}};
-  if (auto written = write_files(options.out, files); !written) {
-    return report_error(written.error(), options);
-  }
+  const auto written =
+      write_outputs(options.out, study_report(*finished),
+                    {{"results.json", results}, {"episodes.csv", cells_csv(finished->result)}});
+  if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", results);
   } else {

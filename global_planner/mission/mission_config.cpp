@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+
 #include <fmt/format.h>
 
 #include "core/config/yaml.hpp"
@@ -34,12 +35,15 @@ bool wants(const TaskConfig& task, const RowParcel& parcel, const Row& row) {
   return task.rows.empty() || names(task.rows, parcel.id + "/" + row.id);
 }
 
-std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm, const std::string& key) {
+std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
+                                      const std::string& key) {
   for (const std::string& id : task.cover) {
     if (id == "all" || farm.find_parcel(id) != nullptr) continue;
     std::string known = "all";
     for (const RowParcel& parcel : farm.row_parcels) known += ", " + parcel.id;
-    return Error{ErrorCode::kUnknownName, "no row parcel '" + id + "' in the farm", "allowed: " + known,
+    return Error{ErrorCode::kUnknownName,
+                 "no row parcel '" + id + "' in the farm",
+                 "allowed: " + known,
                  {{}, 0, key + ".cover"}};
   }
   for (const std::string& id : task.rows) {
@@ -48,7 +52,9 @@ std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm, 
       for (const Row& row : parcel.rows) found = found || parcel.id + "/" + row.id == id;
     }
     if (!found) {
-      return Error{ErrorCode::kUnknownName, "no row '" + id + "' in the farm", "rows are named parcel/row",
+      return Error{ErrorCode::kUnknownName,
+                   "no row '" + id + "' in the farm",
+                   "rows are named parcel/row",
                    {{}, 0, key + ".rows"}};
     }
   }
@@ -65,8 +71,9 @@ Result<std::vector<MissionRow>> rows_to_cover(const MissionConfig& config, const
   for (std::size_t p = 0; p < farm.row_parcels.size(); ++p) {
     const RowParcel& parcel = farm.row_parcels[p];
     for (const Row& row : parcel.rows) {
-      const bool wanted = std::any_of(config.tasks.begin(), config.tasks.end(),
-                                      [&](const TaskConfig& task) { return wants(task, parcel, row); });
+      const bool wanted =
+          std::any_of(config.tasks.begin(), config.tasks.end(),
+                      [&](const TaskConfig& task) { return wants(task, parcel, row); });
       if (wanted) rows.push_back({static_cast<int>(p), Row{parcel.id + "/" + row.id, row.line}});
     }
   }
@@ -78,7 +85,8 @@ Result<std::vector<MissionRow>> rows_to_cover(const MissionConfig& config, const
 }
 
 Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Farm& farm,
-                                    const std::filesystem::path& directory, const std::string& key) {
+                                    const std::filesystem::path& directory,
+                                    const std::string& key) {
   auto vehicle = config::load<Vehicle>(resolve_path(config.model, directory));
   if (!vehicle) return tl::unexpected<Error>(vehicle.error());
   if (config.capacity_wh) vehicle->battery.capacity_wh = *config.capacity_wh;
@@ -96,14 +104,17 @@ std::optional<Error> PlaceConfig::check() const {
   const bool named = !poi.empty();
   const bool placed = x_m.has_value() && y_m.has_value();
   if (named != placed && x_m.has_value() == y_m.has_value()) return std::nullopt;
-  return Error{ErrorCode::kMissingKey, "a place is needed", "give either poi, or both x_m and y_m", {}};
+  return Error{
+      ErrorCode::kMissingKey, "a place is needed", "give either poi, or both x_m and y_m", {}};
 }
 
-std::filesystem::path resolve_path(const std::string& path, const std::filesystem::path& directory) {
+std::filesystem::path resolve_path(const std::string& path,
+                                   const std::filesystem::path& directory) {
   static constexpr std::string_view kVariable = "$HEADLAND_DATA";
   if (path.rfind(kVariable, 0) != 0) return (directory / path).lexically_normal();
   const char* data = std::getenv("HEADLAND_DATA");
-  return std::filesystem::path((data != nullptr ? data : "../shared/data") + path.substr(kVariable.size()));
+  return std::filesystem::path((data != nullptr ? data : "../shared/data") +
+                               path.substr(kVariable.size()));
 }
 
 Result<Mission> load_mission(const MissionConfig& config, const std::filesystem::path& directory) {
@@ -120,7 +131,8 @@ Result<Mission> load_mission(const MissionConfig& config, const std::filesystem:
                 "this version plans for exactly one", {{}, 0, "vehicles"});
   }
   for (std::size_t i = 0; i < config.vehicles.size(); ++i) {
-    auto vehicle = load_vehicle(config.vehicles[i], mission.farm, directory, fmt::format("vehicles.{}", i));
+    auto vehicle =
+        load_vehicle(config.vehicles[i], mission.farm, directory, fmt::format("vehicles.{}", i));
     if (!vehicle) return tl::unexpected<Error>(vehicle.error());
     mission.vehicles.push_back(std::move(*vehicle));
   }

@@ -116,7 +116,7 @@ Result<MissionPlan> plan_mission(const Mission& mission) {
   const MissionVehicle& vehicle = mission.vehicles.front();
   const PlannerConfig& config = mission.config.planner;
   std::vector<Row> rows;
-  for (const MissionRow& row : mission.rows) rows.push_back(row.row);
+  for (const MissionRow& row : mission.rows) { rows.push_back(row.row); rows.back().id = row.row.id.substr(row.row.id.find(char(47))+1); }
 
   const SiteIndex sites{static_cast<int>(rows.size()), static_cast<int>(mission.farm.chargers.size())};
   TransitionOptions options;

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <memory>
+
+#include <fmt/format.h>
 
 #include "control/tracker.hpp"
 #include "sim/lab/metrics.hpp"
@@ -26,8 +27,8 @@ class Driver {
         farm_(farm),
         config_(config),
         progress_(progress),
-        vehicle_(plan.vehicle, plan.stages.front().path.start_pose(), plan.start_soc, config.sensors,
-                 config.seed),
+        vehicle_(plan.vehicle, plan.stages.front().path.start_pose(), plan.start_soc,
+                 config.sensors, config.seed),
         tracker_(make_tracker(plan.vehicle, config.sensors)),
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
@@ -79,17 +80,18 @@ class Driver {
     return duration + 10.0 * static_cast<double>(stage.path.segments().size());
   }
 
-  // Projects the true position onto the path around the tracker's progress, never across a cusp (the
-  // path runs back on itself there), and appends a trace row.
+  // Projects the true position onto the path around the tracker's progress, never across a cusp
+  // (the path runs back on itself there), and appends a trace row.
   void record(const Path& path, const TrackOutput& output) {
     const VehicleState& truth = vehicle_.truth();
-    const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(output.s).segment)];
+    const PathSegment& segment =
+        path.segments()[static_cast<std::size_t>(path.at(output.s).segment)];
     const Projection projection =
         path.project(truth.pose.position(), std::max(segment.begin_s, output.s - kWindow),
                      std::min(segment.end_s, output.s + kWindow));
     const PathSample at = path.at(std::min(projection.s, segment.end_s - 1e-9));
-    run_.trace.push_back({time_, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed, truth.steering,
-                          output.command.yaw_rate, stage_start_s_ + projection.s,
+    run_.trace.push_back({time_, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed,
+                          truth.steering, output.command.yaw_rate, stage_start_s_ + projection.s,
                           projection.lateral_error, vehicle_.soc(), at.gear, at.leg});
     const auto leg = static_cast<std::size_t>(at.leg);
     worst_[leg] = std::max(worst_[leg], std::abs(projection.lateral_error));
@@ -105,9 +107,9 @@ class Driver {
   bool give_up(const char* why) {
     const bool moved = !run_.trace.empty();
     const int leg = moved ? run_.trace.back().leg : 0;
-    run_.metrics.reason = fmt::format("{} after {:.1f} m, on leg '{}'", why,
-                                      moved ? run_.trace.back().s_m : 0.0,
-                                      plan_.legs[static_cast<std::size_t>(leg)].id);
+    run_.metrics.reason =
+        fmt::format("{} after {:.1f} m, on leg '{}'", why, moved ? run_.trace.back().s_m : 0.0,
+                    plan_.legs[static_cast<std::size_t>(leg)].id);
     return false;
   }
 

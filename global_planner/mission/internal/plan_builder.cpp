@@ -27,8 +27,9 @@ class TourBuilder {
   void add_way(int from, int to) {
     const Path path = transitions_.path(from, to);
     if (path.empty()) return;  // two sites at the same pose
-    add_leg(transitions_.kind(from, to), transitions_.site(from).name + " to " + transitions_.site(to).name,
-            path, transitions_.cost(from, to));
+    add_leg(transitions_.kind(from, to),
+            transitions_.site(from).name + " to " + transitions_.site(to).name, path,
+            transitions_.cost(from, to));
   }
 
   void add_row(const RowVisit& visit) {
@@ -69,8 +70,8 @@ class TourBuilder {
 
 }  // namespace
 
-double forced_detours(const Mission& mission, const Transitions& transitions, const SiteIndex& sites,
-                      double tour_bound) {
+double forced_detours(const Mission& mission, const Transitions& transitions,
+                      const SiteIndex& sites, double tour_bound) {
   const MissionVehicle& vehicle = mission.vehicles.front();
   const Battery& battery = vehicle.vehicle.battery;
   double energy = 0.0;
@@ -91,19 +92,22 @@ double forced_detours(const Mission& mission, const Transitions& transitions, co
   for (int c = 0; c < sites.chargers; ++c) {
     for (int from = 0; from <= sites.start(); ++from) {
       for (int to = 0; to <= sites.finish(); ++to) {
-        if (to == sites.start() || from == to || (to / 2 == from / 2 && to < sites.start())) continue;
-        const double extra = cost(from, sites.charger(c)) + cost(sites.charger(c), to) - cost(from, to);
+        if (to == sites.start() || from == to || (to / 2 == from / 2 && to < sites.start()))
+          continue;
+        const double extra =
+            cost(from, sites.charger(c)) + cost(sites.charger(c), to) - cost(from, to);
         if (extra < detour) detour = extra;
       }
     }
   }
-  const double charging = mission.config.objective == Objective::kTime && energy > first
-                              ? (energy - first) /
-                                    std::max_element(mission.farm.chargers.begin(), mission.farm.chargers.end(),
-                                                     [](const Charger& a, const Charger& b) {
-                                                       return a.power_w < b.power_w;
-                                                     })->power_w
-                              : 0.0;
+  const double charging =
+      mission.config.objective == Objective::kTime && energy > first
+          ? (energy - first) /
+                std::max_element(
+                    mission.farm.chargers.begin(), mission.farm.chargers.end(),
+                    [](const Charger& a, const Charger& b) { return a.power_w < b.power_w; })
+                    ->power_w
+          : 0.0;
   return std::isfinite(detour) ? stops * std::max(0.0, detour) + charging : 0.0;
 }
 
@@ -134,11 +138,19 @@ void add_totals(MissionPlan& plan) {
     for (const PlanLeg& leg : vehicle.legs) {
       duration += leg.cost.duration_s;
       switch (leg.kind) {
-        case LegKind::kRow: plan.work_m += leg.cost.length_m; break;
-        case LegKind::kTurn: plan.turn_m += leg.cost.length_m; break;
-        case LegKind::kCharge: ++plan.charge_stops; break;
+        case LegKind::kRow:
+          plan.work_m += leg.cost.length_m;
+          break;
+        case LegKind::kTurn:
+          plan.turn_m += leg.cost.length_m;
+          break;
+        case LegKind::kCharge:
+          ++plan.charge_stops;
+          break;
         case LegKind::kTransit:
-        case LegKind::kTask: plan.transit_m += leg.cost.length_m; break;
+        case LegKind::kTask:
+          plan.transit_m += leg.cost.length_m;
+          break;
       }
     }
     plan.makespan_s = std::max(plan.makespan_s, duration);
@@ -152,10 +164,12 @@ Error with_row_name(Error error, const Mission& mission) {
   if (at == std::string::npos) return error;
   const auto begin = at + word.size();
   auto end = begin;
-  while (end < error.what.size() && std::isdigit(static_cast<unsigned char>(error.what[end])) != 0) ++end;
+  while (end < error.what.size() && std::isdigit(static_cast<unsigned char>(error.what[end])) != 0)
+    ++end;
   if (end == begin) return error;
   const auto index = static_cast<std::size_t>(std::stoi(error.what.substr(begin, end - begin)));
-  if (index < mission.rows.size()) error.what.replace(begin, end - begin, mission.rows[index].row.id);
+  if (index < mission.rows.size())
+    error.what.replace(begin, end - begin, mission.rows[index].row.id);
   return error;
 }
 

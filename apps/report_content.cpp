@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/report_content.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "apps/plan_output.hpp"
+
+namespace headland::apps {
+namespace {
+
+constexpr double kPlanSpacing = 0.25;   // of the drawn plan's points [m]
+constexpr double kSeriesSpacing = 1.0;  // of a plan's series [m]
+constexpr int kMostCells = 400;         // of a study's table
+
+void add_areas(const std::vector<Polygon>& areas, const char* kind, Report& report) {
+  for (const Polygon& area : areas)
+    report.features.push_back(ReportFeature::polygon(kind, "", area));
+}
+
+void add_farm(const Farm& farm, const std::set<std::string>& rows_done, Report& report) {
+  add_areas(drivable_area(farm), "headland", report);
+  for (const RowParcel& parcel : farm.row_parcels) {
+    report.features.push_back(ReportFeature::polygon(
+        "parcel", parcel.name.empty() ? parcel.id : parcel.name, parcel.boundary));
+  }
+  for (const FreeParcel& parcel : farm.free_parcels) {
+    report.features.push_back(ReportFeature::polygon("parcel", parcel.id, parcel.boundary));
+  }
+  for (const Road& road : farm.roads) {
+    report.features.push_back(ReportFeature::line("road", road.id, road.line));
+  }
+  for (const KeepOut& keep_out : farm.keep_outs) {
+    report.features.push_back(ReportFeature::polygon("keep_out", keep_out.id, keep_out.boundary));
+  }
+  for (const RowParcel& parcel : farm.row_parcels) {
+    for (const Row& row : parcel.rows) {
+      const std::string name = parcel.id + "/" + row.id;
+      report.features.push_back(
+          ReportFeature::line(rows_done.count(name) > 0 ? "row_done" : "row", name, row.line));
+    }
+  }
+  for (const Gate& gate : farm.gates) {
+    report.features.push_back(ReportFeature::point("gate", gate.id, gate.position));
+  }
+  for (const Poi& poi : farm.pois) {
+    report.features.push_back(ReportFeature::point("poi", poi.id, poi.pose.position()));
+  }
+  for (const Charger& charger : farm.chargers) {
+    report.features.push_back(ReportFeature::point("charger", charger.id, charger.pose.position()));
+  }
+}
+
+Polyline leg_line(const Path& path, int leg) {
+  const auto [begin, end] = path.leg_range(leg);
+  Polyline line;
+  const int steps = std::max(1, static_cast<int>(std::ceil((end - begin) / kPlanSpacing)));
+  for (int i = 0; i <= steps; ++i) {
+    line.push_back(path.at(begin + (end - begin) * i / steps).pose.position());
+  }
+  return line;
+}
+
+void add_planned_path(const VehiclePlan& vehicle, Report& report) {
+  std::size_t stage = 0;
+  for (int i = 0; i < static_cast<int>(vehicle.legs.size()); ++i) {
+    const PlanLeg& leg = vehicle.legs[static_cast<std::size_t>(i)];
+    if (leg.kind == LegKind::kCharge) {
+      ++stage;
+      continue;
+    }
+    ReportFeature feature =
+        ReportFeature::line("plan", leg.id, leg_line(vehicle.stages[stage].path, i));
+    feature.leg = i;
+    feature.leg_kind = config::enum_name(leg.kind);
+    report.features.push_back(std::move(feature));
+  }
+}
+
+ReportTable leg_table(const VehiclePlan& vehicle) {
+  ReportTable table{"Legs",
+                    {{"leg"},
+                     {"kind"},
+                     {"name"},
+                     {"length", "m"},
+                     {"duration", "s"},
+                     {"energy", "Wh"},
+                     {"charge at end", "%"}},
+                    {}};
+  for (std::size_t i = 0; i < vehicle.legs.size(); ++i) {
+    const PlanLeg& leg = vehicle.legs[i];
+    table.rows.push_back({static_cast<double>(i), std::string(config::enum_name(leg.kind)), leg.id,
+                          std::round(10.0 * leg.cost.length_m) / 10.0,
+                          std::round(leg.cost.duration_s),
+                          std::round(10.0 * leg.cost.energy_j / 3600.0) / 10.0,
+                          std::round(1000.0 * leg.soc_end) / 10.0});
+  }
+  return table;
+}
+
+// Planned speed and state of charge along the path, for a plan that nobody has driven yet.
+ReportSeries planned_series(const VehiclePlan& vehicle) {
+  ReportSeries series;
+  double offset = 0.0;
+  double soc = vehicle.start_soc;
+  int last_leg = -1;
+  for (const PlanStage& stage : vehicle.stages) {
+    for (const PathSample& sample : stage.path.sample(kSeriesSpacing)) {
+      const auto leg = static_cast<std::size_t>(sample.leg);
+      if (sample.leg != last_leg) {
+        soc = leg == 0 ? vehicle.start_soc : vehicle.legs[leg - 1].soc_end;
+        last_leg = sample.leg;
+      }
+      const auto [begin, end] = stage.path.leg_range(sample.leg);
+      const double part = end > begin ? (sample.s - begin) / (end - begin) : 1.0;
+      series.s_m.push_back(offset + sample.s);
+      series.x_m.push_back(sample.pose.x);
+      series.y_m.push_back(sample.pose.y);
+      series.soc.push_back(soc + part * (vehicle.legs[leg].soc_end - soc));
+      series.speed_mps.push_back(leg_speed(vehicle.vehicle, vehicle.legs[leg].kind));
+      series.leg.push_back(sample.leg);
+    }
+    offset += stage.path.length();
+  }
+  return series;
+}
+
+ReportSeries driven_series(const Run& run) {
+  std::vector<double> errors;
+  errors.reserve(run.trace.size());
+  for (const TraceRow& row : run.trace) errors.push_back(row.cross_track_m);
+  ReportSeries series;
+  double s = 0.0;
+  for (const int i : thin_out(static_cast<int>(run.trace.size()), errors, kMaxReportPoints)) {
+    const TraceRow& row = run.trace[static_cast<std::size_t>(i)];
+    s = std::max(s, row.s_m);  // the projection may step back a hair at a cusp
+    series.s_m.push_back(s);
+    series.x_m.push_back(row.x_m);
+    series.y_m.push_back(row.y_m);
+    series.error_m.push_back(row.cross_track_m);
+    series.steering_deg.push_back(rad_to_deg(row.steering_rad));
+    series.soc.push_back(row.soc);
+    series.speed_mps.push_back(row.speed_mps);
+    series.leg.push_back(row.leg);
+  }
+  const bool steers = std::any_of(series.steering_deg.begin(), series.steering_deg.end(),
+                                  [](double angle) { return angle != 0.0; });
+  if (!steers) series.steering_deg.clear();
+  return series;
+}
+
+ReportTile tile(const std::string& label, double value, double unit, const std::string& unit_name,
+                const std::string& hint = {}) {
+  return {label, std::round(value / unit) * unit, unit_name, hint};
+}
+
+void add_plan_tiles(const PlannedMission& planned, Report& report) {
+  const MissionPlan& plan = planned.plan;
+  const VehiclePlan& vehicle = plan.vehicles.front();
+  report.tiles.push_back(tile("Rows' length", plan.work_m / 1000.0, 0.01, "km"));
+  report.tiles.push_back(tile("Turns", plan.turn_m, 1.0, "m"));
+  report.tiles.push_back(tile("Transit", plan.transit_m, 1.0, "m"));
+  report.tiles.push_back(tile("Planned energy", vehicle.energy_j / 3.6e6, 0.01, "kWh"));
+  report.tiles.push_back({"Planned duration", duration_text(plan.makespan_s), "", ""});
+  report.tiles.push_back(tile("Charge stops", plan.charge_stops, 1.0, ""));
+  report.tiles.push_back(tile("Gap", 100.0 * plan.gap_ratio(), 0.01, "%",
+                              "how far the plan is from a bound that no plan can beat"));
+  report.tiles.push_back(tile("Planning", planned.planning_s, 0.01, "s"));
+}
+
+Report base_report(const PlannedMission& planned, ReportKind kind,
+                   const std::set<std::string>& rows_done) {
+  Report report;
+  report.title = planned.mission.config.name;
+  report.kind = kind;
+  report.status = config::enum_name(planned.plan.status);
+  report.version = planned.stamp.version;
+  report.seed = planned.stamp.seed;
+  report.config_hash = planned.stamp.config_hash;
+  report.config_yaml = planned.stamp.config_yaml;
+  const VehiclePlan& vehicle = planned.plan.vehicles.front();
+  report.reserve_soc = vehicle.vehicle.battery.reserve_soc;
+  add_farm(planned.mission.farm, rows_done, report);
+  add_planned_path(vehicle, report);
+  report.tables.push_back(leg_table(vehicle));
+  return report;
+}
+
+}  // namespace
+
+Report plan_report(const PlannedMission& planned) {
+  Report report = base_report(planned, ReportKind::kPlan, {});
+  report.tiles.push_back(tile("Rows", static_cast<double>(planned.mission.rows.size()), 1.0, ""));
+  add_plan_tiles(planned, report);
+  report.series = planned_series(planned.plan.vehicles.front());
+  return report;
+}
+
+Report run_report(const PlannedMission& planned, const Run& run, double real_time_factor) {
+  const std::vector<PlanLeg>& legs = planned.plan.vehicles.front().legs;
+  std::set<std::string> rows_done;
+  for (std::size_t i = 0; i < legs.size(); ++i) {
+    if (legs[i].kind == LegKind::kRow && run.leg_done[i]) rows_done.insert(legs[i].id);
+  }
+  Report report = base_report(planned, ReportKind::kRun, rows_done);
+  const RunMetrics& m = run.metrics;
+  report.status = m.completed ? "completed" : "failed";
+  report.tiles.push_back(
+      {"Rows done", fmt::format("{} / {}", m.rows_done, m.rows_total), "", m.reason});
+  report.tiles.push_back(
+      tile("Error in rows", 1000.0 * m.tracking.row_rms_m, 0.1, "mm", "cross-track, RMS"));
+  report.tiles.push_back(
+      tile("Error in turns", 1000.0 * m.tracking.turn_rms_m, 0.1, "mm", "cross-track, RMS"));
+  report.tiles.push_back(
+      tile("Largest error", 1000.0 * m.tracking.max_m, 0.1, "mm", "cross-track"));
+  report.tiles.push_back(tile("Energy drawn", m.energy_j / 3.6e6, 0.01, "kWh"));
+  report.tiles.push_back(tile("Lowest charge", 100.0 * m.min_soc, 0.1, "%"));
+  report.tiles.push_back(
+      {"Duration", duration_text(m.duration_s), "",
+       fmt::format("simulated {:.0f} times faster than real time", real_time_factor)});
+  add_plan_tiles(planned, report);
+  report.series = driven_series(run);
+  return report;
+}
+
+Report study_report(const FinishedStudy& study) {
+  const StudyResult& result = study.result;
+  Report report;
+  report.title = "Study " + result.study;
+  report.kind = ReportKind::kStudy;
+  report.status = "completed";
+  report.version = study.stamp.version;
+  report.seed = study.stamp.seed;
+  report.config_hash = study.stamp.config_hash;
+  report.config_yaml = study.stamp.config_yaml;
+  for (const StudyTable& table : result.tables) {
+    ReportTable shown{table.title, {}, {}};
+    for (const std::string& name : table.header) shown.columns.push_back({name});
+    for (const auto& row : table.rows) shown.rows.emplace_back(row.begin(), row.end());
+    report.tables.push_back(std::move(shown));
+  }
+  ReportTable cells{"Cells", {{"cell"}, {"n"}, {"metric"}, {"mean"}, {"95 % from"}, {"to"}}, {}};
+  for (const StudyCell& cell : result.cells) {
+    for (const auto& [metric, s] : cell.metrics) {
+      if (static_cast<int>(cells.rows.size()) >= kMostCells) break;
+      const auto bound = [](const std::optional<double>& value) -> ReportValue {
+        return value ? ReportValue(*value) : ReportValue(std::string());
+      };
+      cells.rows.push_back({cell.name, static_cast<double>(cell.n), metric, s.mean, bound(s.ci_low),
+                            bound(s.ci_high)});
+    }
+  }
+  report.tables.push_back(std::move(cells));
+  for (const Plot& plot : result.plots) {
+    ReportPlot shown{plot.title, plot.x_label, plot.y_label, false, {}};
+    for (const PlotSeries& series : plot.series) {
+      shown.series.push_back({series.name, series.x, series.y, false});
+    }
+    report.plots.push_back(std::move(shown));
+  }
+  return report;
+}
+
+Result<void> write_outputs(const std::filesystem::path& directory, const Report& report,
+                           std::map<std::string, std::string> files) {
+  const auto json = report_json(report);
+  if (!json) return tl::unexpected<Error>(json.error());
+  files["report.json"] = *json + "\n";
+  files["report.html"] = report_html(report.title, *json);
+  return write_files(directory, files);
+}
+
+}  // namespace headland::apps

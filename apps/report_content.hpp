@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "apps/planned_mission.hpp"
+#include "apps/report.hpp"
+#include "apps/study_output.hpp"
+#include "sim/lab/closed_loop.hpp"
+
+namespace headland::apps {
+
+/// The report of a plan: the farm, the planned path, state of charge and speed over distance, legs.
+Report plan_report(const PlannedMission& planned);
+/// The report of a drive: the plan's, with the driven path, errors and steering.
+Report run_report(const PlannedMission& planned, const Run& run, double real_time_factor);
+/// The report of a study: its cells as a table, its tables and plots.
+Report study_report(const FinishedStudy& study);
+
+/// Writes a command's files and its report (report.html, report.json) into `directory`.
+Result<void> write_outputs(const std::filesystem::path& directory, const Report& report,
+                           std::map<std::string, std::string> files);
+
+}  // namespace headland::apps
