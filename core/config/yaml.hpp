@@ -142,8 +142,14 @@ Result<void> read_into(const Node& node, T& value, Range range) {
     if (auto read = read_into(node, inner, range); !read) return read;
     value = std::move(inner);
   } else if constexpr (IsVector<T>::value) {
-    if (!node.is_sequence()) return internal::not_a_sequence(node);
     value.clear();
+    if constexpr (std::is_same_v<typename T::value_type, std::string>) {
+      if (node.is_scalar()) {  // one name is a list of one
+        value.push_back(node.scalar());
+        return {};
+      }
+    }
+    if (!node.is_sequence()) return internal::not_a_sequence(node);
     for (const Node& item : node.items()) {
       typename T::value_type element{};
       if (auto read = read_into(item, element, range); !read) return read;

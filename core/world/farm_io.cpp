@@ -15,7 +15,6 @@
 namespace headland {
 namespace {
 
-using config::kNonNegative;
 using config::kPositive;
 using config::Range;
 using internal::below;
@@ -26,6 +25,8 @@ using internal::Properties;
 constexpr double kRowTolerance = 0.5;  // [m] rows hug, and surveyed ones pass, their boundary
 constexpr double kProbeWidth = 0.002;  // [m] of the strip that stands for a row in set operations
 constexpr Range kHeadingDeg{-360.0, 360.0};
+constexpr Range kHeadlandM{0.0, 1000.0};
+constexpr Range kWidthM{0.1, 1000.0};
 
 const std::vector<std::string> kKinds{"row_parcel", "row", "free_parcel", "road",   "keep_out",
                                       "gate",       "poi", "charger",     "terrain"};
@@ -123,9 +124,8 @@ Result<void> FarmBuilder::add_row_parcel(const Feature& feature, Properties& pro
   parcel.row_spacing_m = properties.number("row_spacing_m", kPositive, Need::kOptional, 0.0);
   parcel.row_heading_rad =
       deg_to_rad(properties.number("row_heading_deg", kHeadingDeg, Need::kOptional, 0.0));
-  parcel.headland_width_m =
-      properties.number("headland_width_m", kNonNegative, Need::kOptional, 0.0);
-  parcel.headland_outside_m = properties.number("headland_outside_m", kNonNegative, Need::kOptional,
+  parcel.headland_width_m = properties.number("headland_width_m", kHeadlandM, Need::kOptional, 0.0);
+  parcel.headland_outside_m = properties.number("headland_outside_m", kHeadlandM, Need::kOptional,
                                                 defaults_.headland_outside_m);
   if (auto ok = properties.finish(); !ok) return ok;
   if (auto ok = take_id(parcel.id, feature.where); !ok) return ok;
@@ -163,7 +163,7 @@ Result<void> FarmBuilder::add_free_parcel(const Feature& feature, Properties& pr
 Result<void> FarmBuilder::add_road(const Feature& feature, Properties& properties) {
   Road road;
   road.id = properties.text("id", Need::kOptional);
-  road.width_m = properties.number("width_m", kPositive, Need::kOptional, road.width_m);
+  road.width_m = properties.number("width_m", kWidthM, Need::kOptional, road.width_m);
   if (auto ok = properties.finish(); !ok) return ok;
   if (auto ok = take_id(road.id, feature.where); !ok) return ok;
   auto line = internal::line_of(feature, farm_.frame);
@@ -186,7 +186,7 @@ Result<void> FarmBuilder::add_keep_out(const Feature& feature, Properties& prope
 Result<void> FarmBuilder::add_gate(const Feature& feature, Properties& properties) {
   Gate gate;
   gate.id = properties.text("id", Need::kOptional);
-  gate.width_m = properties.number("width_m", kPositive, Need::kOptional, gate.width_m);
+  gate.width_m = properties.number("width_m", kWidthM, Need::kOptional, gate.width_m);
   if (auto ok = properties.finish(); !ok) return ok;
   if (auto ok = take_id(gate.id, feature.where); !ok) return ok;
   const auto position = internal::point_of(feature, farm_.frame);

@@ -13,7 +13,8 @@ struct LatLon {
 /// WGS84 <-> the farm's local east-north plane (GeographicLib's LocalCartesian, height 0).
 class LocalFrame {
  public:
-  explicit LocalFrame(LatLon origin = {}) : origin_(origin) {}
+  LocalFrame() = default;
+  explicit LocalFrame(LatLon origin) : origin_(origin) {}
   LatLon origin() const { return origin_; }
   Point2 to_map(LatLon position) const;  ///< [m] east, north of the origin
   LatLon to_wgs84(const Point2& p_map) const;

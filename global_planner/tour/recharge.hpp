@@ -48,4 +48,20 @@ struct RechargePlan {
 /// energy is missing.
 Result<RechargePlan> plan_recharges(const RechargeProblem& problem);
 
+/// What every plan of a mission must at least spend, in energy; for a bound on its cost.
+struct RechargeBound {
+  double energy_j = 0.0;      ///< least energy of all work and ways, were the battery endless
+  double start_j = 0.0;       ///< in the battery at the start, above the reserve
+  double per_charge_j = 0.0;  ///< most that one stop restores: full less the reserve
+  double detour_cost = 0.0;   ///< least extra cost of one stop (>= 0), in the objective's unit
+};
+
+/// Stops that no plan can do without: what the start does not cover, by full charges. -1: no
+/// number of stops is enough.
+int min_charge_stops(const RechargeBound& bound);
+
+/// Cost that recharging adds at least to a lower bound of the tour without it: the stops that no
+/// plan can do without, each by the cheapest detour. Infinity if no number of stops is enough.
+double recharge_lower_bound(const RechargeBound& bound);
+
 }  // namespace headland

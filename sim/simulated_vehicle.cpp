@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/simulated_vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace headland {
+
+SimulatedVehicle::SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, double soc,
+                                   const SensorConfig& sensors, std::uint64_t seed)
+    : vehicle_(vehicle),
+      sensors_(sensors),
+      noise_(seed, "sim/sensors"),
+      energy_j_(soc * vehicle.battery.capacity_j()) {
+  state_.pose = start;
+}
+
+void SimulatedVehicle::step(const Command& command, LegKind kind, double dt) {
+  const VehicleState before = state_;
+  state_ = step_vehicle(vehicle_, state_, command, dt);
+  const double distance = 0.5 * std::abs(before.speed + state_.speed) * dt;
+  const Battery& battery = vehicle_.battery;
+  const double per_metre = kind == LegKind::kRow ? battery.work_j_per_m : battery.transit_j_per_m;
+  const double drawn = battery.base_power_w * dt + per_metre * distance;
+  drawn_j_ += drawn;
+  energy_j_ = std::max(0.0, energy_j_ - drawn);
+}
+
+double SimulatedVehicle::charge_full(double power) {
+  const double missing = vehicle_.battery.capacity_j() - energy_j_;
+  energy_j_ = vehicle_.battery.capacity_j();
+  return missing / power;
+}
+
+VehicleState SimulatedVehicle::measure() {
+  VehicleState measured = state_;
+  const double accuracy = sensors_.position_accuracy_m;
+  if (accuracy > 0.0) {
+    measured.pose.x += noise_.uniform(-accuracy, accuracy);
+    measured.pose.y += noise_.uniform(-accuracy, accuracy);
+  }
+  if (sensors_.heading_noise_deg > 0.0) {
+    measured.pose.yaw =
+        wrap_angle(measured.pose.yaw + deg_to_rad(sensors_.heading_noise_deg) * noise_.normal());
+  }
+  return measured;
+}
+
+}  // namespace headland
