@@ -41,11 +41,6 @@ struct Stamp {
 };
 Stamp make_stamp(std::uint64_t seed, std::string config_yaml);
 
-/// Writes all files into a directory (created if absent), each under a temporary name first: an
-/// interrupted command leaves no half-written file. Name -> content.
-Result<void> write_files(const std::filesystem::path& directory,
-                         const std::map<std::string, std::string>& files);
-
 /// A progress bar on stderr, only where that is a terminal.
 class ProgressBar {
  public:

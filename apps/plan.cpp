@@ -12,8 +12,8 @@ int plan_command(const CommonOptions& options) {
   const auto planned = plan_from_file(options);
   if (!planned) return report_error(planned.error(), options);
   const std::string summary = summary_json(planned->plan, planned->planning_s, planned->stamp);
-  const auto written = write_outputs(
-      options.out, plan_report(*planned),
+  const auto written = write_report(
+      plan_report(*planned), options.out,
       {{"summary.json", summary},
        {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)}});
   if (!written) return report_error(written.error(), options);

@@ -11,7 +11,6 @@
 namespace headland::apps {
 namespace {
 
-constexpr double kPeriod = 0.1;       // between messages [s]
 constexpr double kPathSpacing = 0.5;  // of the planned path's poses [m]
 
 constexpr const char* kTime =
@@ -48,7 +47,7 @@ std::string path_text(const VehiclePlan& plan) {
 
 }  // namespace
 
-std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm) {
+std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm, double period) {
   McapWriter writer(fmt::format("headland {}", HEADLAND_VERSION));
   const std::string frame = R"("frame_id":{"type":"string"})";
   const auto path =
@@ -71,10 +70,8 @@ std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm) 
           R"("speed_mps":{"type":"number"},"steering_rad":{"type":"number"},"cross_track_m":{"type":"number"},"soc":{"type":"number"},"s_m":{"type":"number"},"leg":{"type":"string"},"leg_kind":{"type":"string"})"));
 
   writer.write(path, 0, path_text(plan));
-  double next = 0.0;
-  for (const TraceRow& row : run.trace) {
-    if (row.t_s < next) continue;
-    next = row.t_s + kPeriod - 1e-9;
+  for (const int tick : trace_ticks(run.trace, period)) {
+    const TraceRow& row = run.trace[static_cast<std::size_t>(tick)];
     const auto ns = static_cast<std::uint64_t>(std::llround(row.t_s * 1e9));
     const PlanLeg& leg = plan.legs[static_cast<std::size_t>(row.leg)];
     const LatLon place = farm.frame.to_wgs84({row.x_m, row.y_m});

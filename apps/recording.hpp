@@ -8,8 +8,8 @@
 
 namespace headland::apps {
 
-/// run.mcap: the drive at 10 Hz as Foxglove's PoseInFrame and LocationFix, the planned path as
-/// PosesInFrame, and the tracking state as JSON.
-std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm);
+/// run.mcap: the drive every `period` [s] as Foxglove's PoseInFrame and LocationFix, the planned
+/// path as PosesInFrame, and the tracking state as JSON.
+std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm, double period);
 
 }  // namespace headland::apps

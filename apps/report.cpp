@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
 #include <numeric>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "apps/output_files.hpp"
 #include "apps/report_page.hpp"
 
 namespace headland {
@@ -190,30 +190,6 @@ std::string replaced(std::string text, std::string_view from, std::string_view t
   return text;
 }
 
-Result<void> write_file(const std::filesystem::path& file, std::string_view text) {
-  std::filesystem::path beside = file;
-  beside += ".part";
-  {
-    std::ofstream out(beside, std::ios::binary | std::ios::trunc);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    if (!out) {
-      std::error_code ignored;
-      std::filesystem::remove(beside, ignored);
-      return fail(ErrorCode::kFileNotWritable, "cannot be written",
-                  "check the folder's rights and the free space", {file.string(), 0, {}});
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(beside, file, error);
-  if (error) {
-    const std::string why = error.message();
-    std::filesystem::remove(beside, error);
-    return fail(ErrorCode::kFileNotWritable, why, {}, {file.string(), 0, {}});
-  }
-  return {};
-}
-
 }  // namespace
 
 ReportFeature ReportFeature::point(std::string kind, std::string name, const Point2& position) {
@@ -295,17 +271,13 @@ std::string report_html(std::string_view title, std::string_view json) {
   return html;
 }
 
-Result<void> write_report(const Report& report, const std::filesystem::path& directory) {
+Result<void> write_report(const Report& report, const std::filesystem::path& directory,
+                          std::map<std::string, std::string> files) {
   const auto json = report_json(report);
   if (!json) return tl::unexpected<Error>(json.error());
-  std::error_code error;
-  std::filesystem::create_directories(directory, error);
-  if (error) {
-    return fail(ErrorCode::kFileNotWritable, error.message(), "choose another --out",
-                {directory.string(), 0, {}});
-  }
-  if (auto done = write_file(directory / "report.json", *json + "\n"); !done) return done;
-  return write_file(directory / "report.html", report_html(report.title, *json));
+  files["report.json"] = *json + "\n";
+  files["report.html"] = report_html(report.title, *json);
+  return apps::write_files(directory, files);
 }
 
 }  // namespace headland

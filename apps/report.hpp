@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -114,8 +115,9 @@ Result<std::string> report_json(const Report& report);
 /// The page around a JSON text: one file that needs no network.
 std::string report_html(std::string_view title, std::string_view json);
 
-/// Writes report.json and report.html into `directory` (made if absent), each first beside its
-/// place and then moved there, so that a reader never sees half a file. Error kFileNotWritable.
-Result<void> write_report(const Report& report, const std::filesystem::path& directory);
+/// Writes report.json and report.html into `directory`, and `files` (name -> content) beside them,
+/// each first under a temporary name (apps/output_files.hpp). Error kFileNotWritable.
+Result<void> write_report(const Report& report, const std::filesystem::path& directory,
+                          std::map<std::string, std::string> files = {});
 
 }  // namespace headland

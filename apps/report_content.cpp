@@ -264,13 +264,4 @@ Report study_report(const FinishedStudy& study) {
   return report;
 }
 
-Result<void> write_outputs(const std::filesystem::path& directory, const Report& report,
-                           std::map<std::string, std::string> files) {
-  const auto json = report_json(report);
-  if (!json) return tl::unexpected<Error>(json.error());
-  files["report.json"] = *json + "\n";
-  files["report.html"] = report_html(report.title, *json);
-  return write_files(directory, files);
-}
-
 }  // namespace headland::apps

@@ -15,8 +15,4 @@ Report run_report(const PlannedMission& planned, const Run& run, double real_tim
 /// The report of a study: its cells as a table, its tables and plots.
 Report study_report(const FinishedStudy& study);
 
-/// Writes a command's files and its report (report.html, report.json) into `directory`.
-Result<void> write_outputs(const std::filesystem::path& directory, const Report& report,
-                           std::map<std::string, std::string> files);
-
 }  // namespace headland::apps

@@ -43,13 +43,14 @@ int run_command(const CommonOptions& options, double realtime) {
   const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
 
   const std::string metrics = metrics_json(run, real_time_factor, planned->stamp);
-  const auto written = write_outputs(
-      options.out, run_report(*planned, run, real_time_factor),
+  const auto written = write_report(
+      run_report(*planned, run, real_time_factor), options.out,
       {{"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
        {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
        {"metrics.json", metrics},
-       {"trace.csv", trace_csv(run)},
-       {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm)}});
+       {"trace.csv", trace_csv(run, planned->config.simulation.trace_period_s)},
+       {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm,
+                             planned->config.simulation.trace_period_s)}});
   if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", metrics);

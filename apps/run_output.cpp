@@ -43,11 +43,12 @@ std::string metrics_json(const Run& run, double real_time_factor, const Stamp& s
   return document.dump(2) + "\n";
 }
 
-std::string trace_csv(const Run& run) {
+std::string trace_csv(const Run& run, double period) {
   std::string text =
       "t_s,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,gear,leg\n";
   auto out = std::back_inserter(text);
-  for (const TraceRow& row : run.trace) {
+  for (const int tick : trace_ticks(run.trace, period)) {
+    const TraceRow& row = run.trace[static_cast<std::size_t>(tick)];
     fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, row.x_m, row.y_m,
                    row.yaw_rad, row.speed_mps, row.steering_rad, row.yaw_rate_radps, row.s_m,
                    row.cross_track_m, row.soc, static_cast<int>(row.gear), row.leg);

@@ -10,8 +10,8 @@ namespace headland::apps {
 
 /// metrics.json (DESIGN section 5).
 std::string metrics_json(const Run& run, double real_time_factor, const Stamp& stamp);
-/// trace.csv: one line per tick. Shortest decimals that read back to the same bits.
-std::string trace_csv(const Run& run);
+/// trace.csv: a line every `period` [s]. Shortest decimals that read back to the same bits.
+std::string trace_csv(const Run& run, double period);
 /// A few lines for a person.
 std::string run_text(const Run& run, double real_time_factor);
 

@@ -53,8 +53,8 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
 
   const std::string results = results_json(*finished);
   const auto written =
-      write_outputs(options.out, study_report(*finished),
-                    {{"results.json", results}, {"episodes.csv", cells_csv(finished->result)}});
+      write_report(study_report(*finished), options.out,
+                   {{"results.json", results}, {"episodes.csv", cells_csv(finished->result)}});
   if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", results);

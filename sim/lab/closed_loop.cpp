@@ -171,6 +171,18 @@ class Driver {
 
 }  // namespace
 
+std::vector<int> trace_ticks(const std::vector<TraceRow>& trace, double period) {
+  std::vector<int> ticks;
+  double next = 0.0;
+  for (int i = 0; i < static_cast<int>(trace.size()); ++i) {
+    const double t = trace[static_cast<std::size_t>(i)].t_s;
+    if (i > 0 && i + 1 < static_cast<int>(trace.size()) && t < next) continue;
+    ticks.push_back(i);
+    next = t + period - 1e-9;
+  }
+  return ticks;
+}
+
 Run drive_plan(const VehiclePlan& plan, const Farm& farm, const SimulationConfig& config,
                const Progress& progress) {
   return Driver(plan, farm, config, progress).drive();

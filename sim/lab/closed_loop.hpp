@@ -19,6 +19,7 @@ struct SimulationConfig {
   std::uint64_t seed = 1;
   double row_tolerance_m = 0.3;
   double max_deviation_m = 3.0;
+  double trace_period_s = 0.1;
   SensorConfig sensors;
 
   template <class V>
@@ -29,6 +30,8 @@ struct SimulationConfig {
       "A row counts as done if the cross-track error stayed within this [m]");
     v("max_deviation_m", max_deviation_m, config::kPositive,
       "The run is given up when the vehicle is farther than this from its path [m]");
+    v("trace_period_s", trace_period_s, config::kNonNegative,
+      "Between the lines of trace.csv and the messages of run.mcap [s]; 0: every step");
     v("sensors", sensors, "Sensor errors");
   }
 };
@@ -40,10 +43,10 @@ struct TraceRow {
   double y_m = 0.0;
   double yaw_rad = 0.0;
   double speed_mps = 0.0;
-  double steering_rad = 0.0;     ///< Ackermann; zero for differential vehicles
-  double yaw_rate_radps = 0.0;   ///< commanded; differential vehicles
-  double s_m = 0.0;              ///< progress along the whole plan
-  double cross_track_m = 0.0;    ///< true position to the analytic path, left positive
+  double steering_rad = 0.0;    ///< Ackermann; zero for differential vehicles
+  double yaw_rate_radps = 0.0;  ///< commanded; differential vehicles
+  double s_m = 0.0;             ///< progress along the whole plan
+  double cross_track_m = 0.0;   ///< true position to the analytic path, left positive
   double soc = 1.0;
   Gear gear = Gear::kForward;
   int leg = 0;
@@ -52,21 +55,24 @@ struct TraceRow {
 /// What a run amounts to (metrics.json).
 struct RunMetrics {
   bool completed = false;
-  std::string reason;            ///< why not, if not
+  std::string reason;  ///< why not, if not
   int rows_done = 0;
   int rows_total = 0;
   TrackingMetrics tracking;
   double energy_j = 0.0;
   double duration_s = 0.0;
   double min_soc = 1.0;
-  int wrong_gear_count = 0;      ///< ticks that drove against the path's gear
+  int wrong_gear_count = 0;  ///< ticks that drove against the path's gear
 };
 
 struct Run {
-  RunMetrics metrics;
+  RunMetrics metrics;  ///< of every tick
   std::vector<bool> leg_done;
-  std::vector<TraceRow> trace;
+  std::vector<TraceRow> trace;  ///< every tick
 };
+
+/// The ticks of a trace at least `period` [s] apart, the first and last among them.
+std::vector<int> trace_ticks(const std::vector<TraceRow>& trace, double period);
 
 /// Called about every simulated second with the fraction done and the simulated time [s].
 using Progress = std::function<void(double fraction, double time_s)>;

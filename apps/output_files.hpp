@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/base/result.hpp"
+
+namespace headland::apps {
+
+/// Writes all files into a directory (created if absent), each under a temporary name first: an
+/// interrupted command leaves no half-written file. Name -> content.
+Result<void> write_files(const std::filesystem::path& directory,
+                         const std::map<std::string, std::string>& files);
+
+}  // namespace headland::apps
