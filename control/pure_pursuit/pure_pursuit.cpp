@@ -25,7 +25,8 @@ PurePursuit::PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config
     : vehicle_(vehicle), config_(config), filter_(config.filter) {}
 
 void PurePursuit::do_start() {
-  profile_.build(reference(), vehicle_.acceleration_mps2);
+  profile_.build(reference(), vehicle_.acceleration_mps2,
+                 steering_zones(reference(), vehicle_, config_.plan));
   plan_.build(reference(), profile_, vehicle_, config_.plan);
   filter_.reset();
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kStanding;

@@ -13,6 +13,37 @@ constexpr int kPasses = 3;  // the rate of curvature depends on the steering, wh
 
 }  // namespace
 
+// Curvature that changes by c over the length l, centred at the step, leaves the path by c l^2 / 24
+// (twice integrated); the steering takes l = v t for it.
+std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
+                                      const SteeringPlanConfig& config) {
+  std::vector<SpeedZone> zones;
+  double s = 0.0;
+  const PathPiece* before = nullptr;
+  for (const PathPiece& piece : reference.path.pieces()) {
+    if (before != nullptr && before->gear == piece.gear) {
+      const double change = std::abs(piece.curvature - before->curvature);
+      const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
+                                   std::atan(vehicle.wheelbase_m * before->curvature));
+      const double seconds = turn / (config.rate_share * vehicle.steering_rate_radps);
+      const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
+      const double wanted = leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
+      if (change > kSameCurvature && wanted > 0.0) {
+        const double length = std::sqrt(24.0 * config.step_error_m / change);
+        const double speed = std::max(length / seconds, config.least_speed_ratio * wanted);
+        const double half = 0.5 * speed * seconds;
+        if (speed < wanted) zones.push_back({s - half, s + half, speed});
+      }
+    }
+    before = &piece;
+    s += piece.length;
+  }
+  std::stable_sort(zones.begin(), zones.end(), [](const SpeedZone& a, const SpeedZone& b) {
+    return a.begin_s < b.begin_s;
+  });
+  return zones;
+}
+
 struct SteeringPlan::Builder {
   SteeringPlan& plan;
   const Reference& reference;
