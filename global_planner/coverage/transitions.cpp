@@ -198,7 +198,7 @@ void Transitions::Impl::join_lanes(const Farm& farm, const std::vector<Polygon>&
   const double clearance = 0.5 * vehicle.footprint.width_m + options.margin_m + kLaneSlack;
   lanes = std::make_unique<LaneGraph>(
       space, lane_poses(farm, drivable, bodies.bodies, space, clearance, radius), radius,
-      transit_rate);
+      vehicle.can_reverse, transit_rate);
   connections.resize(ports_.size());
   parallel_for(ports(), [this](int p) {
     if (port(p).end.free_run < 0.0) return;

@@ -24,14 +24,17 @@ constexpr int kBlock = 1024;     // edges verified at once
 
 }  // namespace
 
-LaneGraph::LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, CostRate rate)
+LaneGraph::LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, bool reverses,
+                     CostRate rate)
     : space_(space),
       poses_(std::move(poses)),
       radius_(radius),
+      reverses_(reverses),
       reach_(std::max(12.0, 5.0 * radius)),
       rate_(rate) {
   index_poses();
   join(candidates());
+  join_reverses();
   sort_steps();
 }
 
@@ -136,19 +139,56 @@ void LaneGraph::join(const std::vector<Candidate>& candidates) {
       step.from = edge.from;
       step.to = edge.to;
       step.radius = radii[k];
-      step.length = radii[k] == radius_ ? edge.length
-                                        : dubins_length(pose(edge.from), pose(edge.to), radii[k]);
-      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, step.length);
-      add_step(step);
+      step.way =
+          way_cost(radii[k] == radius_ ? edge.length
+                                       : dubins_length(pose(edge.from), pose(edge.to), radii[k]),
+                   0);
+      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, step.way.length);
+      steps_.push_back(step);
       if (std::pair(edge.to ^ 1, edge.from ^ 1) == std::pair(edge.from, edge.to)) continue;
       step.from = edge.to ^ 1;
       step.to = edge.from ^ 1;
       step.mirrored = true;
-      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, step.length);
-      add_step(step);
+      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, step.way.length);
+      steps_.push_back(step);
     }
   }
   accepted_.clear();
+}
+
+// Half a turn on the spot: three arcs of 60 degrees, the middle one in reverse, whose centres form
+// an equilateral triangle; or else the loop of three forward arcs.
+Curve LaneGraph::turn_round(bool other_hand) const {
+  const double curvature = (other_hand ? -1.0 : 1.0) / radius_;
+  const double arc = radius_ * kPi / 3.0;
+  Curve curve;
+  curve.add({reverses_ ? curvature : -curvature, arc});
+  curve.add({reverses_ ? -curvature : curvature, reverses_ ? -arc : 5.0 * arc});
+  curve.add({reverses_ ? curvature : -curvature, arc});
+  return curve;
+}
+
+void LaneGraph::join_reverses() {
+  std::vector<int> hand(static_cast<std::size_t>(nodes()), -1);
+  parallel_for(nodes(), [&](int node) {
+    for (const int other : {0, 1}) {
+      if (space_.fits(pose(node), turn_round(other == 1), Travel::kBoth, {})) {
+        hand[static_cast<std::size_t>(node)] = other;
+        return;
+      }
+    }
+  });
+  for (int node = 0; node < nodes(); ++node) {
+    const int other = hand[static_cast<std::size_t>(node)];
+    if (other < 0) continue;
+    Step step;
+    step.from = node;
+    step.to = node ^ 1;
+    step.kind = StepKind::kTurnRound;
+    step.mirrored = other == 1;
+    step.way = way_cost(turn_round(false).length(), turn_round(false).cusps());
+    steps_.push_back(step);
+  }
 }
 
 // The radius of a curve along which the outline fits both ways; 0: none.
@@ -163,11 +203,6 @@ double LaneGraph::fitting_radius(const Candidate& edge) const {
   return 0.0;
 }
 
-void LaneGraph::add_step(Step step) {
-  step.cost = rate_.of(step.length, step.cusps);
-  steps_.push_back(step);
-}
-
 void LaneGraph::sort_steps() {
   std::stable_sort(steps_.begin(), steps_.end(),
                    [](const Step& a, const Step& b) { return a.from < b.from; });
@@ -176,7 +211,7 @@ void LaneGraph::sort_steps() {
   for (const Step& step : steps_) ++step_begin_[static_cast<std::size_t>(step.from) + 1];
   for (std::size_t n = 0; n < all; ++n) step_begin_[n + 1] += step_begin_[n];
   arcs_.clear();
-  for (const Step& step : steps_) arcs_.push_back({step.cost, step.to});
+  for (const Step& step : steps_) arcs_.push_back({step.way, step.to});
 }
 
 Curve LaneGraph::Option::curve(const LaneGraph& graph, const Pose2& out, bool reversing) const {
@@ -226,7 +261,8 @@ std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) con
     if (std::find(settled.begin(), settled.end(), option.node) != settled.end()) continue;
     const Curve curve = option.curve(*this, port.end.out, reversing);
     if (!option.known) {
-      option.cost = rate_.of(option.lead + curve.length(), curve.cusps());
+      const Turn turn{option.lead, 0.0, curve};
+      option.cost = rate_.of(turn.length(), turn.cusps());
       option.known = true;
     } else if (beyond_another(option)) {
       settled.push_back(option.node);
@@ -234,7 +270,8 @@ std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) con
     } else if (space_.fits(advance(port.end.out, 0.0, option.lead), curve, port.travel,
                            {port.end.row, -1})) {
       settled.push_back(option.node);
-      found.push_back({option.node, {option.lead, 0.0, curve}});
+      const Turn turn{option.lead, 0.0, curve};
+      found.push_back({option.node, way_cost(turn.length(), turn.cusps()), turn});
       costs.push_back(option.cost);
       continue;
     } else if (option.radius == radius_ && !reversing) {
@@ -261,18 +298,17 @@ void LaneGraph::add_passages(std::vector<Passage> passages) {
       step.from = passage.in[c].node ^ 1;
       step.to = inside;
       step.connection = static_cast<int>(c);
-      step.length = passage.in[c].turn.length();
-      step.cusps = passage.in[c].turn.cusps();
-      add_step(step);
+      step.way = passage.in[c].way;
+      steps_.push_back(step);
     }
     for (std::size_t c = 0; c < passage.out.size(); ++c) {
       step.kind = StepKind::kOutOfRow;
       step.from = inside;
       step.to = passage.out[c].node;
       step.connection = static_cast<int>(c);
-      step.length = passage.path.length() + passage.out[c].turn.length();
-      step.cusps = passage.out[c].turn.cusps();
-      add_step(step);
+      const WayCost& out = passage.out[c].way;
+      step.way = way_cost(passage.path.length() + out.length, out.cusps);
+      steps_.push_back(step);
     }
   }
   sort_steps();
@@ -287,6 +323,10 @@ Path LaneGraph::step_path(const Step& step) const {
     path.append(without_slivers(shortest_dubins(from, to, step.radius)), from, 0);
     return step.mirrored ? mirrored(path) : path;
   }
+  if (step.kind == StepKind::kTurnRound) {
+    path.append(turn_round(step.mirrored), pose(step.from), 0);
+    return path;
+  }
   const Passage& passage = passages_[static_cast<std::size_t>(step.passage)];
   const auto at = static_cast<std::size_t>(step.connection);
   if (step.kind == StepKind::kIntoRow) {
@@ -298,67 +338,44 @@ Path LaneGraph::step_path(const Step& step) const {
   return path;
 }
 
-LaneGraph::Search::Search(const LaneGraph& graph) : graph_(graph) {
-  const std::size_t all = graph.step_begin_.size() - 1;
-  cost_.resize(all);
-  length_.resize(all);
-  cusps_.resize(all);
-  last_step_.resize(all);
-}
+LaneGraph::Search::Search(const LaneGraph& graph)
+    : graph_(graph), reached_(graph.step_begin_.size() - 1) {}
 
 // Dijkstra's algorithm, begun at all connections of the port.
 void LaneGraph::Search::run(const std::vector<Connection>& from) {
-  std::fill(cost_.begin(), cost_.end(), kInfinity);
-  std::fill(last_step_.begin(), last_step_.end(), -1);
+  std::fill(reached_.begin(), reached_.end(), Reached{{kInfinity, kInfinity, 0}, -1});
   queue_.clear();
-  const auto reach = [this](int node, double cost, int step) {
-    const auto n = static_cast<std::size_t>(node);
-    if (cost >= cost_[n]) return;
-    cost_[n] = cost;
-    last_step_[n] = step;
+  const auto reach = [this](int node, const WayCost& so_far, const WayCost& step, int number) {
+    Reached& there = reached_[static_cast<std::size_t>(node)];
+    const double cost = so_far.cost + step.cost;
+    if (cost >= there.way.cost) return;
+    there = {{cost, so_far.length + step.length, so_far.cusps + step.cusps}, number};
     queue_.emplace_back(cost, node);
     std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
   };
   for (std::size_t c = 0; c < from.size(); ++c) {
-    const Turn& turn = from[c].turn;
-    reach(from[c].node, graph_.rate_.of(turn.length(), turn.cusps()), -2 - static_cast<int>(c));
+    reach(from[c].node, {}, from[c].way, -2 - static_cast<int>(c));
   }
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
     const auto [cost, node] = queue_.back();
     queue_.pop_back();
     const auto n = static_cast<std::size_t>(node);
-    if (cost > cost_[n]) continue;
-    settle(n, from);
+    const WayCost so_far = reached_[n].way;
+    if (cost > so_far.cost) continue;
     for (int s = graph_.step_begin_[n]; s < graph_.step_begin_[n + 1]; ++s) {
       const Arc& arc = graph_.arcs_[static_cast<std::size_t>(s)];
-      reach(arc.to, cost + arc.cost, s);
+      reach(arc.to, so_far, arc.way, s);
     }
   }
-}
-
-// The node's cheapest way is known: so are its length and its changes of gear.
-void LaneGraph::Search::settle(std::size_t node, const std::vector<Connection>& from) {
-  const int last = last_step_[node];
-  if (last < -1) {
-    const Turn& turn = from[static_cast<std::size_t>(-2 - last)].turn;
-    length_[node] = turn.length();
-    cusps_[node] = turn.cusps();
-    return;
-  }
-  const Step& step = graph_.steps_[static_cast<std::size_t>(last)];
-  const auto before = static_cast<std::size_t>(step.from);
-  length_[node] = length_[before] + step.length;
-  cusps_[node] = cusps_[before] + step.cusps;
 }
 
 int LaneGraph::Search::best_entry(const std::vector<Connection>& port) const {
   int best = -1;
   double least = kInfinity;
   for (std::size_t c = 0; c < port.size(); ++c) {
-    const Turn& turn = port[c].turn;
-    const double cost = cost_[static_cast<std::size_t>(port[c].node ^ 1)] +
-                        graph_.rate_.of(turn.length(), turn.cusps());
+    const double cost =
+        reached_[static_cast<std::size_t>(port[c].node ^ 1)].way.cost + port[c].way.cost;
     if (cost < least) {
       least = cost;
       best = static_cast<int>(c);
@@ -371,10 +388,9 @@ WayCost LaneGraph::Search::to(const std::vector<Connection>& port) const {
   const int best = best_entry(port);
   if (best < 0) return {kInfinity, kInfinity, 0};
   const Connection& entry = port[static_cast<std::size_t>(best)];
-  const auto n = static_cast<std::size_t>(entry.node ^ 1);
-  const double length = entry.turn.length();
-  const int cusps = entry.turn.cusps();
-  return {cost_[n] + graph_.rate_.of(length, cusps), length_[n] + length, cusps_[n] + cusps};
+  const WayCost& there = reached_[static_cast<std::size_t>(entry.node ^ 1)].way;
+  return {there.cost + entry.way.cost, there.length + entry.way.length,
+          there.cusps + entry.way.cusps};
 }
 
 Path LaneGraph::Search::path_to(const Pose2& out, const std::vector<Connection>& from,
@@ -386,7 +402,7 @@ Path LaneGraph::Search::path_to(const Pose2& out, const std::vector<Connection>&
   std::vector<int> chain;
   int node = entry.node ^ 1;
   for (;;) {
-    const int s = last_step_[static_cast<std::size_t>(node)];
+    const int s = reached_[static_cast<std::size_t>(node)].last_step;
     chain.push_back(s);
     if (s < -1) break;
     node = graph_.steps_[static_cast<std::size_t>(s)].from;

@@ -14,9 +14,17 @@ struct Port {
   Travel travel = Travel::kForth;
 };
 
+/// What a way costs and is.
+struct WayCost {
+  double cost = 0.0;    ///< in the objective's unit
+  double length = 0.0;  ///< [m]
+  int cusps = 0;
+};
+
 /// A track from a port out to a node of the lane graph.
 struct Connection {
   int node = 0;
+  WayCost way;  ///< of the turn
   Turn turn;
 };
 
@@ -27,21 +35,16 @@ struct Passage {
   std::vector<Connection> out;  ///< of the port where it ends
 };
 
-/// What a way costs and is.
-struct WayCost {
-  double cost = 0.0;    ///< in the objective's unit
-  double length = 0.0;  ///< [m]
-  int cusps = 0;
-};
-
 /// A roadmap of poses joined by Dubins curves along which the outline fits, closed under mirroring:
 /// node 2 k + 1 is node 2 k looking back, and with every edge a -> b goes b^1 -> a^1 along the same
 /// track. Thus the way from one port to another, mirrored, is the way back.
 class LaneGraph {
  public:
-  /// Joins the poses. Of longer edges only those are kept that are notably shorter than two
-  /// shorter ones (a greedy spanner).
-  LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, CostRate rate);
+  /// Joins the poses, also with their own reverse where there is room to turn round (a three-point
+  /// turn if the vehicle `reverses`, else a loop). Of longer edges only those are kept that are
+  /// notably shorter than two shorter ones (a greedy spanner).
+  LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, bool reverses,
+            CostRate rate);
 
   int nodes() const { return 2 * static_cast<int>(poses_.size()); }
   Pose2 pose(int node) const;
@@ -63,35 +66,35 @@ class LaneGraph {
                  const std::vector<Connection>& port) const;
 
    private:
-    void settle(std::size_t node, const std::vector<Connection>& from);
     int best_entry(const std::vector<Connection>& port) const;
 
+    // How a node is reached.
+    struct Reached {
+      WayCost way;
+      int last_step = -1;  // -1: none; below: -2 - index of the first connection
+    };
     const LaneGraph& graph_;
-    std::vector<double> cost_;
-    std::vector<double> length_;
-    std::vector<int> cusps_;
-    std::vector<int> last_step_;  // -1: none; below: -2 - index of the first connection
+    std::vector<Reached> reached_;  // of nodes
     std::vector<std::pair<double, int>> queue_;
   };
 
  private:
-  enum class StepKind { kLane, kIntoRow, kOutOfRow };
+  enum class StepKind { kLane, kTurnRound, kIntoRow, kOutOfRow };
   // An edge in one direction.
   struct Step {
     int from = 0;
     int to = 0;
-    double cost = 0.0;
-    double length = 0.0;  // [m]
-    int cusps = 0;
+    WayCost way;
     StepKind kind = StepKind::kLane;
     double radius = 0.0;    // kLane: of the curve [m]
-    bool mirrored = false;  // kLane: driven from the end of the curve to its start
+    bool mirrored = false;  // kLane: driven from the end of the curve to its start;
+                            // kTurnRound: to the other hand
     int passage = -1;       // kIntoRow, kOutOfRow
     int connection = -1;
   };
   // Of a step, what Dijkstra's inner loop needs.
   struct Arc {
-    double cost;
+    WayCost way;
     int to;
   };
   // A track from a port to a node.
@@ -115,14 +118,19 @@ class LaneGraph {
   std::vector<Option> options(const TurnEnd& end) const;
   bool bypassed(const Candidate& edge) const;
   void join(const std::vector<Candidate>& candidates);
+  Curve turn_round(bool other_hand) const;
+  void join_reverses();
   double fitting_radius(const Candidate& edge) const;
-  void add_step(Step step);
+  WayCost way_cost(double length, int cusps) const {
+    return {rate_.of(length, cusps), length, cusps};
+  }
   void sort_steps();
   Path step_path(const Step& step) const;
 
   const FreeSpace& space_;
   std::vector<Pose2> poses_;
   double radius_;
+  bool reverses_;
   double reach_;  // longest distance of an edge [m]
   CostRate rate_;
   std::vector<Passage> passages_;

@@ -10,6 +10,7 @@ namespace headland::coverage {
 namespace {
 
 constexpr double kBlockGap = 0.4;          // [m] rows nearer than this make up one block
+constexpr double kEvenSmoothing = 20.0;    // [m]
 constexpr double kOpenSpacing = 8.0;       // [m] of the grid on open ground
 constexpr double kMostOpenPoints = 600.0;  // a coarser grid where there would be more
 
@@ -111,7 +112,7 @@ class LaneMaker {
         clearance_(clearance),
         radius_(radius),
         spacing_(std::clamp(1.5 * radius, 4.0, 8.0)),
-        nearby_(std::max(kOpenSpacing, spacing_)) {}
+        nearby_(std::max(kOpenSpacing, spacing_ + radius_)) {}
 
   // Densely around corners and junctions: there a pose must lie where the curve begins, lest the
   // curve cut the corner.
@@ -145,7 +146,6 @@ class LaneMaker {
       const std::vector<Polygon> body = widen(row.line, row.spacing);
       bodies.insert(bodies.end(), body.begin(), body.end());
     }
-    const double smoothing = std::max(radius_, 3.0);
     // Far enough out for a quarter turn from a row's end, and for the nose to swing; closer where
     // there is no room for that.
     const double wide = std::max({clearance_, radius_, space_.swing(radius_)}) + 0.2;
@@ -153,15 +153,8 @@ class LaneMaker {
     for (double c = wide - 1.5; c > clearance_ + 0.5; c -= 1.5) clearances.push_back(c);
     if (wide > clearance_ + 0.2) clearances.push_back(clearance_);
     for (const Polygon& block : grow(bodies, 0.5 * kBlockGap)) {
-      const Polygon outline{block.outer, {}};
-      for (const double c : clearances) {
-        // Closing evens out the steps of staggered row ends.
-        const auto rings = grow(grow({outline}, c - 0.5 * kBlockGap + smoothing), -smoothing);
-        // A closer pose is of use only where no wider one is.
-        for (const Polygon& ring : rings) {
-          add(poses_along(ring.outer, true, spacing_), c == wide ? 0.0 : 0.6 * spacing_);
-        }
-      }
+      ring(block, wide, kEvenSmoothing, wide);
+      for (const double c : clearances) ring(block, c, std::max(radius_, 3.0), wide);
     }
   }
 
@@ -201,6 +194,16 @@ class LaneMaker {
   std::vector<Pose2> take() { return std::move(poses_); }
 
  private:
+  // Poses around a block of rows where there are none yet. Closing evens out the steps of staggered
+  // row ends; what it closes too far gets a ring of its own from less smoothing.
+  void ring(const Polygon& block, double clearance, double smoothing, double wide) {
+    const double apart = 0.1 + std::hypot(0.5 * spacing_, wide - clearance);
+    const double out = clearance - 0.5 * kBlockGap + smoothing;
+    for (const Polygon& around : grow(grow({{block.outer, {}}}, out), -smoothing)) {
+      add(poses_along(around.outer, true, spacing_), apart);
+    }
+  }
+
   void add(const std::vector<Pose2>& poses, double apart = 0.0) {
     std::vector<Pose2> fitting;
     for (const Pose2& pose : poses) {

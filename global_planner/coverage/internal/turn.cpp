@@ -13,7 +13,7 @@
 namespace headland::coverage {
 namespace {
 
-enum class Kind { kDubins, kFishtail, kReedsShepp };
+enum class Kind { kDubins, kFishtail, kReedsShepp, kThreePointLeft, kThreePointRight };
 
 constexpr int kMostTests = 400;   // of one search
 constexpr double kSliver = 1e-9;  // [m] shorter pieces are rounding
@@ -28,7 +28,7 @@ struct Candidate {
 };
 
 bool costs_more(const Candidate& a, const Candidate& b) {
-  return std::tie(a.cost, a.line, a.steps) > std::tie(b.cost, b.line, b.steps);
+  return std::tie(a.cost, a.line, a.steps, a.kind) > std::tie(b.cost, b.line, b.steps, b.kind);
 }
 
 Pose2 forward(const Pose2& pose, double distance) { return advance(pose, 0.0, distance); }
@@ -68,7 +68,38 @@ std::vector<Leads> first_leads(const TurnEnd& from, const TurnEnd& to, const Foo
 }
 
 int cusps_at_least(Kind kind) {
-  return kind == Kind::kDubins ? 0 : kind == Kind::kFishtail ? 2 : 1;
+  return kind == Kind::kDubins ? 0 : kind == Kind::kReedsShepp ? 1 : 2;
+}
+
+double angle_of(const Point2& v) { return std::atan2(v.y(), v.x()); }
+
+// The three-point turn: an arc forwards, one in reverse with the steering thrown over, an arc
+// forwards. Between antiparallel rows nearer than 2 R all of its kind are pi R long, the shortest
+// Reeds-Shepp curve among them; which of them fits is for the headland to say.
+std::optional<Curve> three_point_turn(const Pose2& from, const Pose2& to, double radius,
+                                      double hand) {
+  const Point2 first = from.position() + hand * radius * from.left();
+  const Point2 last = to.position() + hand * radius * to.left();
+  const Point2 apart = last - first;
+  const double distance = apart.norm();
+  if (distance >= 4.0 * radius || distance < kSliver) return std::nullopt;
+  const Point2 across = Point2(-apart.y(), apart.x()) / distance *
+                        std::sqrt(4.0 * radius * radius - 0.25 * distance * distance);
+  const auto turned = [hand](const Point2& a, const Point2& b) {
+    return wrap_positive(hand * (angle_of(b) - angle_of(a)), kSliver);
+  };
+  std::optional<Curve> best;
+  for (const double side : {1.0, -1.0}) {
+    const Point2 middle = 0.5 * (first + last) + side * across;
+    const Point2 in = 0.5 * (first + middle);
+    const Point2 out = 0.5 * (middle + last);
+    Curve curve;
+    curve.add({hand / radius, radius * turned(from.position() - first, in - first)});
+    curve.add({-hand / radius, -radius * turned(in - middle, out - middle)});
+    curve.add({hand / radius, radius * turned(out - last, to.position() - last)});
+    if (!best || curve.length() < best->length()) best = curve;
+  }
+  return best;
 }
 
 // Computes the candidate's curve; false if there is none of this kind.
@@ -83,9 +114,15 @@ bool resolve(Candidate& candidate, const TurnEnd& a, const TurnEnd& b, double ra
       candidate.turn.curve = without_slivers(shortest_reeds_shepp(from, to, radius));
       return candidate.turn.cusps() > 0;  // or else the Dubins curve is the same
     case Kind::kFishtail:
+    case Kind::kThreePointLeft:
+    case Kind::kThreePointRight:
       break;
   }
-  const std::optional<Curve> curve = fishtail(from, to, radius);
+  const std::optional<Curve> curve =
+      candidate.kind == Kind::kFishtail
+          ? fishtail(from, to, radius)
+          : three_point_turn(from, to, radius,
+                             candidate.kind == Kind::kThreePointLeft ? 1.0 : -1.0);
   if (curve) candidate.turn.curve = *curve;
   return curve.has_value();
 }
@@ -112,6 +149,12 @@ Curve mirrored(const Curve& curve) {
     back.add({-piece.curvature, piece.length});
   }
   return back;
+}
+
+int Turn::cusps() const {
+  if (curve.count() == 0) return 0;
+  return curve.cusps() + (curve.begin()->length < 0.0 ? 1 : 0) +
+         ((curve.end() - 1)->length < 0.0 ? 1 : 0);
 }
 
 Turn mirrored(const Turn& turn) { return {turn.lead_in, turn.lead_out, mirrored(turn.curve)}; }
@@ -161,7 +204,10 @@ std::optional<Turn> TurnSearch::find(const TurnEnd& from, const TurnEnd& to, Tur
   for (int line = 0; line < static_cast<int>(firsts.size()); ++line) {
     if (kinds.dubins) push(line, 0, Kind::kDubins);
     if (kinds.fishtail) push(line, 0, Kind::kFishtail);
-    if (kinds.reeds_shepp) push(line, 0, Kind::kReedsShepp);
+    if (!kinds.reeds_shepp) continue;
+    for (const Kind kind : {Kind::kThreePointLeft, Kind::kThreePointRight, Kind::kReedsShepp}) {
+      push(line, 0, kind);
+    }
   }
   int tests = 0;
   while (!heap.empty() && tests < kMostTests) {

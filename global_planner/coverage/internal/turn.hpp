@@ -33,7 +33,8 @@ struct Turn {
   Curve curve;
 
   double length() const { return lead_out + curve.length() + lead_in; }
-  int cusps() const { return curve.cusps(); }
+  /// Changes of gear: those inside, and those on leaving and entering, which is done forwards.
+  int cusps() const;
 };
 
 /// The curve less pieces that are mere rounding.
@@ -51,7 +52,7 @@ Path turn_path(const Pose2& out, const Turn& turn);
 struct TurnKinds {
   bool dubins = true;
   bool fishtail = false;
-  bool reeds_shepp = false;
+  bool reeds_shepp = false;  ///< and three-point turns, which are among them
 };
 
 /// Finds manoeuvres that fit.

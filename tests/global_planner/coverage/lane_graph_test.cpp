@@ -24,10 +24,11 @@ Farm yard_and_road() {
 }
 
 struct Net {
-  explicit Net(const Farm& farm)
+  explicit Net(const Farm& farm, bool reverses = false)
       : area(drivable_area(farm)),
         space(area, {}, kOutline, 0.1, 0.1),
-        graph(space, lane_poses(farm, area, {}, space, 0.9, kRadius), kRadius, {1.0, 0.0}) {}
+        graph(space, lane_poses(farm, area, {}, space, 0.9, kRadius), kRadius, reverses,
+              {1.0, 0.0}) {}
   std::vector<Connection> at(const Pose2& out, Travel travel) const {
     return graph.connect({{out, -1, 0.0}, travel}, false);
   }
@@ -58,18 +59,44 @@ TEST(LaneGraph, TheWayLookingBackIsAsLong) {
   const Net net(yard_and_road());
   for (int a = 0; a < net.graph.nodes(); a += 7) {
     LaneGraph::Search there(net.graph);
-    there.run({{a, {}}});
+    there.run({{a, {}, {}}});
     for (int b = 0; b < net.graph.nodes(); b += 11) {
       LaneGraph::Search back(net.graph);
-      back.run({{b ^ 1, {}}});
-      const double ab = there.to({{b ^ 1, {}}}).length;
-      const double ba = back.to({{a, {}}}).length;
+      back.run({{b ^ 1, {}, {}}});
+      const double ab = there.to({{b ^ 1, {}, {}}}).length;
+      const double ba = back.to({{a, {}, {}}}).length;
       if (std::isinf(ab)) {
         EXPECT_TRUE(std::isinf(ba));
       } else {
         EXPECT_NEAR(ab, ba, 1e-9);
       }
     }
+  }
+}
+
+TEST(LaneGraph, APoseIsLeftLookingBackWhereThereIsRoomToTurnRound) {
+  for (const bool reverses : {false, true}) {
+    const Net net(yard_and_road(), reverses);
+    int in_yard = 0;
+    int turned = 0;
+    for (int node = 0; node < net.graph.nodes(); ++node) {
+      if (net.graph.pose(node).x > 28.0) continue;  // the road is a dead end
+      ++in_yard;
+      LaneGraph::Search search(net.graph);
+      search.run({{node, {}, {}}});
+      const std::vector<Connection> looking_back{
+          {node, {}, {}}};  // entered from the node's reverse
+      const WayCost way = search.to(looking_back);
+      if (std::isinf(way.cost)) continue;
+      ++turned;
+      EXPECT_LE(way.length, (reverses ? 1.0 : 7.0 / 3.0) * kPi * kRadius + 100.0);
+      const Path path = search.path_to(net.graph.pose(node), {{node, {}, {}}}, looking_back);
+      const Pose2 back = reversed(net.graph.pose(node));
+      EXPECT_NEAR((path.end_pose().position() - back.position()).norm(), 0.0, 1e-6);
+      EXPECT_NEAR(wrap_angle(path.end_pose().yaw - back.yaw), 0.0, 1e-6);
+    }
+    EXPECT_GT(in_yard, 50);
+    EXPECT_GT(turned, 9 * in_yard / 10);  // all but those that look into a wall
   }
 }
 

@@ -56,9 +56,16 @@ void expect_sound_paths(const Transitions& ways, const Farm& farm, const Vehicle
       const std::string name = ways.site(from).name + " -> " + ways.site(to).name;
       ASSERT_FALSE(path.empty()) << name;
       EXPECT_NEAR(path.length(), cost.length_m, 1e-6) << name;
-      const DriveCost again = drive_cost(vehicle, ways.kind(from, to), path.length(),
-                                         static_cast<int>(path.segments().size()) - 1);
-      EXPECT_NEAR(again.duration_s, cost.duration_s, 1e-6) << name;
+      // Rows and stops are left and entered forwards.
+      const int cusps = static_cast<int>(path.segments().size()) - 1 +
+                        (path.segments().front().gear == Gear::kReverse ? 1 : 0) +
+                        (path.segments().back().gear == Gear::kReverse ? 1 : 0);
+      const DriveCost again = drive_cost(vehicle, ways.kind(from, to), path.length(), cusps);
+      if (ways.kind(from, to) == LegKind::kTurn) {
+        EXPECT_NEAR(again.duration_s, cost.duration_s, 1e-6) << name;
+      } else {  // two tracks that meet in reverse are counted with a change of gear each
+        EXPECT_LE(again.duration_s, cost.duration_s + 1e-6) << name;
+      }
       const Pose2 start = path.start_pose();
       const Pose2 end = path.end_pose();
       const Pose2 depart = ways.site(from).depart;
@@ -110,10 +117,12 @@ TEST(Transitions, ForwardTurnsHaveTheLengthsOfPiAndOmega) {
 
 TEST(Transitions, ReversingTurnsHaveTheLengthsOfFishtailAndReedsShepp) {
   const double radius = 5.1961524;
+  Vehicle car = small_car(radius);
+  car.footprint = {0.3, 0.2, 0.6};  // no nose that must be straight before it enters a row
   TransitionOptions options = shortest();
-  const Transitions all = built(make_field({}), {}, small_car(radius), options);
+  const Transitions all = built(make_field({}), {}, car, options);
   options.reeds_shepp = false;
-  const Transitions fishtails = built(make_field({}), {}, small_car(radius), options);
+  const Transitions fishtails = built(make_field({}), {}, car, options);
   for (int d = 1; d <= 4; ++d) {  // all nearer than 2 R
     EXPECT_NEAR(all.cost(1, 1 + 2 * d).length_m, kPi * radius, 1e-6);
     EXPECT_NEAR(fishtails.cost(1, 1 + 2 * d).length_m, (kPi + 2.0) * radius - 2.5 * d, 1e-6);

@@ -45,7 +45,7 @@ TEST(Turn, AMirroredTrackLeadsBack) {
 }
 
 TEST(TurnSearch, TakesTheOmegaWhereNothingElseIsAllowed) {
-  const FreeSpace space = field(20.0);
+  const FreeSpace space = field(20.0, {0.3, 0.2, 0.8});
   const auto turn =
       TurnSearch(space, kRadius).find(row_end(0.0, 0, 12.0), row_end(2.5, 1, 12.0), {}, {1.0, 0.0});
   ASSERT_TRUE(turn);
@@ -68,6 +68,22 @@ TEST(TurnSearch, TheDearerTheGearTheFewerTheCusps) {
     last = turn->cusps();
   }
   EXPECT_EQ(last, 0);
+}
+
+TEST(TurnSearch, ThreePointTurnsEndWhereTheyShallAndAreAsShortAsReedsSheppHasThem) {
+  for (const double x : {2.5, -2.5, 5.0, -5.0, 5.5}) {
+    const TurnEnd to{{x, 0.0, 0.5 * kPi}, -1, 0.0};
+    const TurnEnd from{{0.0, 0.0, 0.5 * kPi}, -1, 0.0};
+    const FreeSpace open({{{{-30.0, -30.0}, {30.0, -30.0}, {30.0, 30.0}, {-30.0, 30.0}}, {}}}, {},
+                         kOutline, 0.1, 0.1);
+    const auto turn = TurnSearch(open, kRadius).find(from, to, {false, false, true}, {1.0, 0.0});
+    ASSERT_TRUE(turn);
+    EXPECT_NEAR(turn->length(), kPi * kRadius, 1e-9);
+    EXPECT_EQ(turn->cusps(), 2);
+    const EndError miss = end_error(turn->curve, from.out, reversed(to.out));
+    EXPECT_LT(miss.position, 1e-9);
+    EXPECT_LT(miss.yaw, 1e-9);
+  }
 }
 
 TEST(TurnSearch, ANarrowerHeadlandNeverMakesATurnCheaper) {
