@@ -7,9 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "control/tracker.hpp"
-#include "sim/lab/metrics.hpp"
-#include "sim/lab/trackers.hpp"
 
 namespace headland {
 namespace {
@@ -29,7 +26,7 @@ class Driver {
         progress_(progress),
         vehicle_(plan.vehicle, plan.stages.front().path.start_pose(), plan.start_soc,
                  config.sensors, config.seed),
-        tracker_(make_tracker(plan.vehicle, config.sensors)),
+        tracker_(make_tracker(plan.vehicle, config.control, config.sensors)),
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
     for (const PlanStage& stage : plan.stages) total_length_ += stage.path.length();

@@ -9,6 +9,7 @@
 #include "core/config/visit.hpp"
 #include "global_planner/mission/mission_plan.hpp"
 #include "sim/lab/metrics.hpp"
+#include "sim/lab/trackers.hpp"
 #include "sim/simulated_vehicle.hpp"
 
 namespace headland {
@@ -21,6 +22,7 @@ struct SimulationConfig {
   double max_deviation_m = 3.0;
   double trace_period_s = 0.1;
   SensorConfig sensors;
+  ControlConfig control;
 
   template <class V>
   void visit(V& v) {
@@ -33,6 +35,7 @@ struct SimulationConfig {
     v("trace_period_s", trace_period_s, config::kNonNegative,
       "Between the lines of trace.csv and the messages of run.mcap [s]; 0: every step");
     v("sensors", sensors, "Sensor errors");
+    v("control", control, "The trackers");
   }
 };
 

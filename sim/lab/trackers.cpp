@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/trackers.hpp"
-#include "control/lookahead_rover/rover_tracker.hpp"
+
 namespace headland {
-std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, const SensorConfig& sensors) {
-  RoverTrackerConfig config;
-  config.filter.fix_accuracy_m = sensors.position_accuracy_m;
-  return std::make_unique<RoverTracker>(vehicle, config);
+
+std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig control,
+                                      const SensorConfig& sensors) {
+  const auto inform = [&](PositionFilterConfig& filter) {
+    if (filter.fix_accuracy_m == 0.0) filter.fix_accuracy_m = sensors.position_accuracy_m;
+  };
+  if (vehicle.steering == Steering::kAckermann) {
+    inform(control.pure_pursuit.filter);
+    return std::make_unique<PurePursuit>(vehicle, control.pure_pursuit);
+  }
+  inform(control.rover.filter);
+  return std::make_unique<RoverTracker>(vehicle, control.rover);
 }
-}
+
+}  // namespace headland

@@ -3,13 +3,27 @@
 
 #include <memory>
 
-#include "control/tracker.hpp"
+#include "control/lookahead_rover/rover_tracker.hpp"
+#include "control/pure_pursuit/pure_pursuit.hpp"
 #include "sim/simulated_vehicle.hpp"
 
 namespace headland {
 
-/// The tracker that suits a vehicle: pure pursuit for Ackermann, the rover tracker for differential
-/// kinematics, with its position filter told how good the fixes are.
-std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, const SensorConfig& sensors);
+/// The trackers' settings; the vehicle's kinematics says which one drives.
+struct ControlConfig {
+  PurePursuitConfig pure_pursuit;
+  RoverTrackerConfig rover;
+
+  template <class V>
+  void visit(V& v) {
+    v("pure_pursuit", pure_pursuit, "Of Ackermann vehicles");
+    v("rover", rover, "Of differential vehicles");
+  }
+};
+
+/// Pure pursuit for Ackermann, the rover tracker for differential kinematics; a filter that is told
+/// no accuracy takes that of the simulated fixes.
+std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig control,
+                                      const SensorConfig& sensors);
 
 }  // namespace headland

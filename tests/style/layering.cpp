@@ -54,6 +54,7 @@ const std::vector<Library>& libraries() {
       {"tl/", {}},
       {"fmt/", {}},
       {"sys/", {}},
+      {"unistd.h", {}},
       {"yaml-cpp/", {"core"}},
       {"nlohmann/", {"core", "sim/lab", "apps"}},
       {"geos_c.h", {"core"}},
