@@ -12,10 +12,10 @@ namespace headland {
 /// What seed 002's controller follows: waypoints cut into links (a row, a headland turn, the way
 /// from or to the depot), and one guided point a link.
 struct SeedRoute {
-  std::vector<Point2> points;   ///< [m]
-  std::vector<int> link;        ///< of each point; never decreases, starts at 0
-  std::vector<bool> is_turn;    ///< of each link
-  std::vector<Point2> guided;   ///< of each link [m]
+  std::vector<Point2> points;  ///< [m]
+  std::vector<int> link;       ///< of each point; never decreases, starts at 0
+  std::vector<bool> is_turn;   ///< of each link
+  std::vector<Point2> guided;  ///< of each link [m]
 
   int links() const { return static_cast<int>(is_turn.size()); }
   /// Index of the last point of a link.
@@ -24,7 +24,7 @@ struct SeedRoute {
 
 /// Parameters of seed 002's controller; the defaults are those of its part D.
 struct SeedPurePursuitConfig {
-  double wheelbase_m = 2.5;       ///< (002) part D; the text of Sec. 2.1 says 3
+  double wheelbase_m = 2.5;  ///< (002) part D; the text of Sec. 2.1 says 3
   double max_steering_deg = 60.0;
   double lookahead_line_m = 1.0;
   double lookahead_turn_m = 0.8;
@@ -48,8 +48,9 @@ struct SeedPurePursuitConfig {
   }
 };
 
-/// Seed 002's segment-bounded pure pursuit (Algorithm 3) as its authors ran it, kept as a yardstick:
-/// forward only, curvature from the nominal lookahead distance rather than from the true one.
+/// Seed 002's segment-bounded pure pursuit (Algorithm 3) as its authors ran it, kept as a
+/// yardstick: forward only, curvature from the nominal lookahead distance rather than from the true
+/// one.
 class SeedPurePursuit {
  public:
   struct Output {

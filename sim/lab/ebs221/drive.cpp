@@ -10,10 +10,10 @@
 namespace headland {
 namespace {
 
-constexpr double kEndRadius = 0.5;     // of the seed's loop [m]
-constexpr int kLeastPeriods = 1000;    // of the seed's loop
-constexpr double kWindow = 3.0;        // of the projection, around the tracker's progress [m]
-constexpr double kStanding = 1e-3;     // [m/s]
+constexpr double kEndRadius = 0.5;   // of the seed's loop [m]
+constexpr int kLeastPeriods = 1000;  // of the seed's loop
+constexpr double kWindow = 3.0;      // of the projection, around the tracker's progress [m]
+constexpr double kStanding = 1e-3;   // [m/s]
 
 void euler(const SeedPlant& plant, double wheelbase, double steering, Pose2& pose) {
   const double dt = plant.period_s / plant.euler_steps;
@@ -27,11 +27,9 @@ void euler(const SeedPlant& plant, double wheelbase, double steering, Pose2& pos
 // Nearest point of the path around the tracker's progress, never across a cusp: there the path
 // runs back on itself.
 PathError error_at(const Path& path, const Point2& position, double progress) {
-  const PathSegment& segment =
-      path.segments()[static_cast<std::size_t>(path.at(progress).segment)];
-  const Projection nearest =
-      path.project(position, std::max(segment.begin_s, progress - kWindow),
-                   std::min(segment.end_s, progress + kWindow));
+  const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(progress).segment)];
+  const Projection nearest = path.project(position, std::max(segment.begin_s, progress - kWindow),
+                                          std::min(segment.end_s, progress + kWindow));
   const int leg = path.at(std::min(nearest.s, segment.end_s - 1e-9)).leg;
   return {nearest.s, nearest.lateral_error, nearest.distance, leg};
 }

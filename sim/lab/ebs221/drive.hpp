@@ -13,13 +13,13 @@ namespace headland {
 
 /// A drive, control period by control period.
 struct FieldDrive {
-  std::vector<Point2> positions;   ///< when each command was computed [m]
-  std::vector<double> steering;    ///< the angle driven with until the next one [rad]
-  std::vector<PathError> errors;   ///< to the exact path
-  double duration = 0.0;           ///< [s]
-  double distance = 0.0;           ///< driven, in both gears [m]
-  int wrong_gear_count = 0;        ///< periods in which the vehicle moved against the path's gear
-  int guided_count = 0;            ///< periods under the guided point (the seed's only)
+  std::vector<Point2> positions;  ///< when each command was computed [m]
+  std::vector<double> steering;   ///< the angle driven with until the next one [rad]
+  std::vector<PathError> errors;  ///< to the exact path
+  double duration = 0.0;          ///< [s]
+  double distance = 0.0;          ///< driven, in both gears [m]
+  int wrong_gear_count = 0;       ///< periods in which the vehicle moved against the path's gear
+  int guided_count = 0;           ///< periods under the guided point (the seed's only)
   bool completed = false;
 };
 
@@ -28,7 +28,7 @@ struct FieldDrive {
 struct SeedPlant {
   double speed_mps = 1.0;
   double period_s = 0.01;
-  int euler_steps = 10;       ///< per period
+  int euler_steps = 10;  ///< per period
   double max_time_s = 1000.0;
 };
 

@@ -58,9 +58,6 @@ RowOrder alternating_order(const std::vector<int>& rows, bool first_from_top) {
   return order;
 }
 
-RowOrder seed_order_60() { return alternating_order({1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, true); }
-RowOrder seed_order_30() { return alternating_order({1, 6, 7, 5, 10, 4, 9, 3, 8, 2}, true); }
-
 std::vector<FieldLink> field_links(const Ebs221Field& field, const RowOrder& order) {
   std::vector<FieldLink> links;
   Pose2 at = field.depot();

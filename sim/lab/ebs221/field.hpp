@@ -14,10 +14,10 @@ namespace headland {
 /// Seed 002's field: rows along y from y = 0, their middles W / 2, 3 W / 2, ... in x; the depot
 /// stands 3 W to the left of the field at half a row's length, facing the field. (002) part A
 struct Ebs221Field {
-  int rows_count = 10;               ///< N
-  double row_width_m = 2.5;          ///< W
-  double row_length_m = 20.0;        ///< RL
-  double planning_wheelbase_m = 3.0; ///< of the turning radius; the drives have 2.5 m
+  int rows_count = 10;                ///< N
+  double row_width_m = 2.5;           ///< W
+  double row_length_m = 20.0;         ///< RL
+  double planning_wheelbase_m = 3.0;  ///< of the turning radius; the drives have 2.5 m
 
   double row_x(int row) const { return (row + 0.5) * row_width_m; }  ///< row: from 0 [m]
   Pose2 depot() const { return {-3.0 * row_width_m, 0.5 * row_length_m, 0.0}; }
@@ -39,11 +39,6 @@ using RowOrder = std::vector<RowVisit>;
 
 /// The order that alternates the direction from row to row. `rows`: counted from 1, as (002) does.
 RowOrder alternating_order(const std::vector<int>& rows, bool first_from_top);
-
-/// Orders of seed 002's genetic algorithm, from its results files: both enter row 1 at its upper
-/// end.
-RowOrder seed_order_60();
-RowOrder seed_order_30();
 
 /// One link of the drive: from the depot, a row, a turn, ..., back to the depot.
 struct FieldLink {
