@@ -52,7 +52,7 @@ Json leg_coordinates(const Path& path, int leg, const Farm& farm) {
 }  // namespace
 
 std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp& stamp) {
-  Json document = {{"status", config::enum_name(plan.status)},
+  Json document = {{"status", config::enum_name(plan.status())},
                    {"objective", config::enum_name(plan.objective)},
                    {"totals",
                     {{"work_m", rounded(plan.work_m, 1e-3)},
@@ -123,7 +123,7 @@ std::string plan_text(const MissionPlan& plan, double planning_s) {
       "driving    {:.0f} m in turns, {:.0f} m in transit\n"
       "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.0f} %\n"
       "duration   {}\n",
-      config::enum_name(plan.status), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()),
+      config::enum_name(plan.status()), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()),
       planning_s, rows, plan.work_m, plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6,
       plan.charge_stops, plan.charge_stops == 1 ? "" : "s",
       100.0 * (plan.vehicles.empty() ? 1.0 : plan.vehicles.front().min_soc),

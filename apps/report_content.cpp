@@ -176,7 +176,7 @@ Report base_report(const PlannedMission& planned, ReportKind kind,
   Report report;
   report.title = planned.mission.config.name;
   report.kind = kind;
-  report.status = config::enum_name(planned.plan.status);
+  report.status = config::enum_name(planned.plan.status());
   report.version = planned.stamp.version;
   report.seed = planned.stamp.seed;
   report.config_hash = planned.stamp.config_hash;

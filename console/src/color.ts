@@ -21,7 +21,7 @@ export function oklch(lightness: number, chroma: number, hue: number): string {
 /// Small is close to the background, large stands out from it.
 export function ramp(t: number, dark: boolean): string {
   const u = Math.min(1, Math.max(0, t));
-  return dark ? oklch(0.5 + 0.42 * u, 0.12 + 0.02 * u, 285 - 180 * u)
+  return dark ? oklch(0.56 + 0.36 * u, 0.12 + 0.02 * u, 285 - 180 * u)
               : oklch(0.80 - 0.46 * u, 0.12 + 0.05 * u, 165 + 150 * u);
 }
 

@@ -2,10 +2,10 @@
 // Plots of a study: each on its own, with its own cursor and zoom.
 import {Theme} from './color';
 import {element} from './dom';
-import {Plot, Shared} from './plot';
+import {Part, Plot, Shared} from './plot';
 import {PlotData} from './types';
 
-export function free_plot(data: PlotData, theme: () => Theme): {root: HTMLElement, repaint: () => void} {
+export function free_plot(data: PlotData, theme: () => Theme): Part {
   let cursor: number|null = null;
   let range: [number, number]|null = null;
   const shared: Shared = {
@@ -15,5 +15,6 @@ export function free_plot(data: PlotData, theme: () => Theme): {root: HTMLElemen
     set_range: (r) => (range = r, plot.repaint()),
   };
   const plot = new Plot(data, {height: 280}, shared, theme);
-  return {root: element('section', {class: 'card'}, plot.root), repaint: () => plot.repaint()};
+  return {root: element('section', {class: 'card'}, plot.root), repaint: () => plot.repaint(),
+          repaint_now: () => plot.repaint_now()};
 }

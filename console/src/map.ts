@@ -18,6 +18,7 @@ import {Feature, Position, Series} from './types';
 import {Bounds, View, empty_bounds, extend, nearest_sample} from './view';
 
 const kMaxZoom = 400;
+const kBandWidth = 0.6; // m; of a plan below a driven path
 const kGrab = 28; // px within which the pointer catches the nearest sample
 
 export class MapView {
@@ -65,6 +66,9 @@ export class MapView {
   repaint(): void {
     this.draw();
     this.draw_overlay();
+  }
+  repaint_now(): void {
+    this.paint();
   }
 
   private build(): HTMLElement {
@@ -207,7 +211,7 @@ export class MapView {
     this.in_metres(context, (scale) => {
       for (const layer of shown) {
         if (layer.key === 'driven') this.paint_driven(context, layer, scale, theme);
-        else paint_layer(context, layer, this.paths.get(layer)!, scale, theme);
+        else this.paint_ground(context, layer, scale, theme);
       }
     });
     this.paint_marks(context, shown, theme);
@@ -217,6 +221,14 @@ export class MapView {
     if (this.has_driven && shown.some((l) => l.key === 'driven')) {
       paint_color_bar(context, width, height, this.full_scale_m, theme);
     }
+  }
+
+  // Below a driven path the planned one is a soft band, so that both can be seen.
+  private paint_ground(context: CanvasRenderingContext2D, layer: Layer, scale: number, theme: Theme): void {
+    const band = this.has_driven && layer.key.startsWith('plan_');
+    context.globalAlpha = band ? 0.32 : 1;
+    paint_layer(context, band ? {...layer, width: Math.min(7, kBandWidth * scale), dash: []} : layer, this.paths.get(layer)!, scale, theme);
+    context.globalAlpha = 1;
   }
 
   private paint_driven(context: CanvasRenderingContext2D, layer: Layer, scale: number, theme: Theme): void {

@@ -130,7 +130,7 @@ export function paint_north(context: CanvasRenderingContext2D, theme: Theme): vo
 /// The colours of |error|; right edge at `right`.
 export function paint_color_bar(context: CanvasRenderingContext2D, right: number, height: number,
                                 full_scale_m: number, theme: Theme): void {
-  const width = 120;
+  const width = right < 480 ? 84 : 120;
   const [x, y] = [right - 16 - width, height - 40];
   context.fillStyle = theme.get('map-panel');
   context.beginPath();
@@ -144,11 +144,11 @@ export function paint_color_bar(context: CanvasRenderingContext2D, right: number
   context.font = font(11, 500);
   context.textBaseline = 'alphabetic';
   context.textAlign = 'left';
-  context.fillText('Cross-track error [m]', x, y - 8);
+  context.fillText(width < 100 ? '|error| [m]' : 'Cross-track error [m]', x, y - 8);
   context.fillStyle = theme.get('muted');
   context.fillText('0', x, y + 22);
   context.textAlign = 'center';
-  context.fillText(number(full_scale_m / 2), x + width / 2, y + 22);
+  if (width > 100) context.fillText(number(full_scale_m / 2), x + width / 2, y + 22);
   context.textAlign = 'right';
   context.fillText('\u2265 ' + number(full_scale_m), x + width, y + 22);
   context.textAlign = 'left';

@@ -13,9 +13,10 @@ import {PlotData, PlotSeries} from './types';
 
 export interface PlotOptions {
   reference?: {value: number, label: string}; // a level line, such as the reserve
-  symmetric?: boolean;                        // zero in the middle
+  with_zero?: boolean;                        // zero is part of the axis
   y_format?: (value: number) => string;
   height?: number; // [px]
+  left?: number;   // least room for the numbers of the axis [px]: plots above each other line up
 }
 
 /// What plots share: the x under the pointer, and the stretch of x shown (null: all).
@@ -24,6 +25,13 @@ export interface Shared {
   set_cursor(x: number|null): void;
   range(): [number, number]|null;
   set_range(range: [number, number]|null): void;
+}
+
+/// What the page needs of anything that draws: when the theme changes, and before it is printed.
+export interface Part {
+  root: HTMLElement;
+  repaint(): void;
+  repaint_now(): void;
 }
 
 const kTop = 8;
@@ -60,6 +68,9 @@ export class Plot {
   repaint(): void {
     this.draw();
     this.draw_overlay();
+  }
+  repaint_now(): void {
+    this.paint();
   }
   repaint_cursor(): void {
     this.draw_overlay();
@@ -141,11 +152,8 @@ export class Plot {
   private find_y_domain(): [number, number] {
     const values = this.data.series.flatMap((s) => extent(s.y.filter((v): v is number => v !== null && (!this.data.log_y || v > 0))));
     if (this.options.reference) values.push(this.options.reference.value);
-    let [low, high] = extent(values);
-    if (this.options.symmetric) {
-      high = Math.max(Math.abs(low), Math.abs(high));
-      low = -high;
-    }
+    if (this.options.with_zero) values.push(0);
+    const [low, high] = extent(values);
     if (low !== high) return [low, high];
     return this.data.log_y ? [low / 2, high * 2] : [low - (Math.abs(low) * 0.1 || 1), high + (Math.abs(high) * 0.1 || 1)];
   }
@@ -160,13 +168,13 @@ export class Plot {
     const count = Math.max(2, Math.floor(height / 44));
     this.y.nice(count);
     const y_ticks = this.y_ticks(count);
-    const left = Math.ceil(Math.max(24, ...y_ticks.map(([, text]) => context.measureText(text).width)) + 10);
+    const left = Math.ceil(Math.max(this.options.left ?? 24, ...y_ticks.map(([, text]) => context.measureText(text).width)) + 10);
     this.x_pixels = [left, width - kRight];
     this.x = scaleLinear().domain(this.shared.range() ?? this.all_x).range(this.x_pixels);
     this.paint_axes(context, y_ticks, theme, width, height);
     context.save();
     context.beginPath();
-    context.rect(left, 0, width - kRight - left, height - kBottom + 1);
+    context.rect(left - 4, 0, width - kRight - left + 8, height - kBottom + 4);
     context.clip();
     this.data.series.forEach((series, i) => this.paint_series(context, series, series_color(i, theme)));
     this.paint_reference(context, theme, left, width - kRight);
@@ -249,9 +257,8 @@ export class Plot {
     context.stroke();
     context.setLineDash([]);
     context.font = font(11, 500);
-    context.textAlign = 'right';
-    context.fillText(reference.label, right - 4, y - 5);
     context.textAlign = 'left';
+    context.fillText(reference.label, left + 6, y - 5);
   }
 
   private paint_overlay(): void {

@@ -5,6 +5,7 @@ import {element} from './dom';
 import {free_plot} from './free_plots';
 import {Link} from './link';
 import {MapView} from './map';
+import {Part} from './plot';
 import {run_plots} from './run_plots';
 import {page_head, tiles} from './summary';
 import {table} from './table';
@@ -21,10 +22,10 @@ function choose_theme(choice: Choice): void {
 function build(report: Report): void {
   let theme = current_theme();
   const get_theme = () => theme;
-  const repaints: (() => void)[] = [];
+  const parts: Part[] = [];
   const repaint = () => {
     theme = current_theme();
-    for (const paint of repaints) paint();
+    for (const part of parts) part.repaint();
   };
 
   const asked = new URLSearchParams(location.search).get('theme') as Choice;
@@ -39,7 +40,11 @@ function build(report: Report): void {
     repaint();
   });
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', repaint);
-  addEventListener('beforeprint', () => (choose_theme('light'), repaint()));
+  addEventListener('beforeprint', () => {
+    choose_theme('light');
+    theme = current_theme();
+    for (const part of parts) part.repaint_now(); // the printer does not wait for a frame
+  });
   addEventListener('afterprint', () => (choose_theme(choice), repaint()));
 
   const link = new Link();
@@ -50,18 +55,18 @@ function build(report: Report): void {
   const row: Node[] = [];
   if (has_map) {
     const map = new MapView(report.map.features, report.series, link, get_theme);
-    repaints.push(() => map.repaint());
+    parts.push(map);
     row.push(map.root);
   }
   if (plots) {
-    repaints.push(plots.repaint);
+    parts.push(plots);
     row.push(plots.root);
   }
   if (row.length) page.push(element('div', {class: row.length > 1 ? 'pair' : 'single'}, ...row));
   const grid = element('div', {class: 'plots'});
   for (const data of report.plots) {
     const plot = free_plot(data, get_theme);
-    repaints.push(plot.repaint);
+    parts.push(plot);
     grid.append(plot.root);
   }
   if (report.plots.length) page.push(grid);

@@ -5,6 +5,7 @@ import {text_of} from './format';
 import {Report, Tile} from './types';
 
 const kGood = ['optimal', 'feasible', 'completed', 'complete', 'done', 'ok', 'passed'];
+const kTilesAbreast = 7;
 const kBad = ['failed', 'infeasible', 'error', 'aborted', 'collision'];
 
 function status_class(status: string): string {
@@ -35,5 +36,6 @@ function tile_node(tile: Tile): HTMLElement {
 }
 
 export function tiles(list: Tile[]): HTMLElement {
-  return element('dl', {class: 'tiles', 'aria-label': 'Summary'}, ...list.map(tile_node));
+  const columns = Math.ceil(list.length / Math.ceil(list.length / kTilesAbreast)); // rows of like length
+  return element('dl', {class: 'tiles', 'aria-label': 'Summary', style: `--columns: ${columns}`}, ...list.map(tile_node));
 }

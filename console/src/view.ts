@@ -19,27 +19,31 @@ export function extend(bounds: Bounds, x: number, y: number): void {
   bounds.max_y = Math.max(bounds.max_y, y);
 }
 
+const kFoot = 48; // px at the bottom, for the scale and colour bars
+
 /// Ground to screen before zooming: north up, all of the bounds visible.
 export class View {
   readonly scale: number; // [px/m]
+  private readonly center_py: number;
   private readonly center_x: number;
   private readonly center_y: number;
 
-  constructor(bounds: Bounds, private readonly width: number, private readonly height: number,
-              margin = 24) {
+  constructor(bounds: Bounds, private readonly width: number, height: number, margin = 28) {
     const wide = Math.max(bounds.max_x - bounds.min_x, 1);
     const high = Math.max(bounds.max_y - bounds.min_y, 1);
-    this.scale = Math.min(Math.max(width - 2 * margin, 40) / wide, Math.max(height - 2 * margin, 40) / high);
+    const foot = Math.min(kFoot, 0.12 * height);
+    this.center_py = (height - foot) / 2;
+    this.scale = Math.min(Math.max(width - 2 * margin, 40) / wide, Math.max(height - foot - 2 * margin, 40) / high);
     this.center_x = (bounds.min_x + bounds.max_x) / 2;
     this.center_y = (bounds.min_y + bounds.max_y) / 2;
   }
   to_screen(x: number, y: number): [number, number] {
     return [this.width / 2 + (x - this.center_x) * this.scale,
-            this.height / 2 - (y - this.center_y) * this.scale];
+            this.center_py - (y - this.center_y) * this.scale];
   }
   to_ground(px: number, py: number): [number, number] {
     return [this.center_x + (px - this.width / 2) / this.scale,
-            this.center_y - (py - this.height / 2) / this.scale];
+            this.center_y - (py - this.center_py) / this.scale];
   }
 }
 

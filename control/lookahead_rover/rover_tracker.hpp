@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "control/lookahead_rover/position_filter.hpp"
-#include "control/lookahead_rover/speed_profile.hpp"
+#include "control/position_filter.hpp"
+#include "control/speed_profile.hpp"
 #include "control/tracker.hpp"
 #include "core/config/visit.hpp"
 #include "core/model/vehicle.hpp"

@@ -28,6 +28,23 @@ Polygon disc(const Point2& center, double radius) {
 }  // namespace
 
 const RowParcel* Farm::find_parcel(std::string_view id) const { return find(row_parcels, id); }
+const Row& Farm::row(RowRef ref) const {
+  return row_parcels[static_cast<std::size_t>(ref.parcel)].rows[static_cast<std::size_t>(ref.row)];
+}
+
+std::string Farm::row_name(RowRef ref) const {
+  return row_parcels[static_cast<std::size_t>(ref.parcel)].id + "/" + row(ref).id;
+}
+
+std::vector<RowRef> Farm::all_rows() const {
+  std::vector<RowRef> refs;
+  for (int p = 0; p < static_cast<int>(row_parcels.size()); ++p) {
+    const auto& rows = row_parcels[static_cast<std::size_t>(p)].rows;
+    for (int r = 0; r < static_cast<int>(rows.size()); ++r) refs.push_back({p, r});
+  }
+  return refs;
+}
+
 const Poi* Farm::find_poi(std::string_view id) const { return find(pois, id); }
 const Charger* Farm::find_charger(std::string_view id) const { return find(chargers, id); }
 

@@ -16,6 +16,12 @@ struct Row {
   Polyline line;  ///< at least two points [m, map]
 };
 
+/// A row of a farm, by number.
+struct RowRef {
+  int parcel = 0;  ///< in Farm::row_parcels
+  int row = 0;     ///< in that parcel's rows
+};
+
 /// A block of rows. Vehicles turn inside the boundary beyond the rows' ends, and up to
 /// `headland_outside_m` beyond the boundary.
 struct RowParcel {
@@ -82,6 +88,11 @@ struct Farm {
 
   /// The parcel, POI or charger of that id, or null.
   const RowParcel* find_parcel(std::string_view id) const;
+  const Row& row(RowRef ref) const;
+  /// "parcel/row": unique in the farm, as messages, plans and missions name a row.
+  std::string row_name(RowRef ref) const;
+  /// All rows, parcel by parcel.
+  std::vector<RowRef> all_rows() const;
   const Poi* find_poi(std::string_view id) const;
   const Charger* find_charger(std::string_view id) const;
 };

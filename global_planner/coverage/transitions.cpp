@@ -45,7 +45,7 @@ struct Way {
 }  // namespace
 
 struct Transitions::Impl {
-  Impl(const Farm& farm, const std::vector<Row>& rows_in, const std::vector<Site>& stops,
+  Impl(const Farm& farm, const std::vector<RowRef>& rows_in, const std::vector<Site>& stops,
        const Vehicle& vehicle_in, const TransitionOptions& options_in, const RowBodies& bodies);
 
   // Each site has a port where it is left and one where it is entered.
@@ -91,28 +91,30 @@ struct Transitions::Impl {
   std::vector<Way> ways;
 };
 
-Transitions::Impl::Impl(const Farm& farm, const std::vector<Row>& rows_in,
+Transitions::Impl::Impl(const Farm& farm, const std::vector<RowRef>& row_refs,
                         const std::vector<Site>& stops, const Vehicle& vehicle_in,
                         const TransitionOptions& options_in, const RowBodies& bodies)
-    : rows(rows_in),
-      vehicle(vehicle_in),
+    : vehicle(vehicle_in),
       options(options_in),
-      ends(2 * static_cast<int>(rows_in.size())),
+      ends(2 * static_cast<int>(row_refs.size())),
       radius(vehicle_in.turning_radius()),
       spacing(bodies.widest),
       turn_rate(cost_rate(vehicle_in, LegKind::kTurn, options_in.objective)),
       transit_rate(cost_rate(vehicle_in, LegKind::kTransit, options_in.objective)),
       space(drivable_area(farm), bodies.bodies, vehicle_in.footprint, options_in.margin_m,
             bodies.margin) {
-  for (const Row& row : rows) {
+  for (const RowRef ref : row_refs) {
+    const Row& row = farm.row(ref);
+    const std::string name = farm.row_name(ref);
+    rows.push_back(row);
     row_paths.push_back(row_path(row, 0, radius));
     const Path back = row_path(row, 1, radius);
     const Pose2 first_out = back.end_pose();
     const Pose2 last_out = row_paths.back().end_pose();
     sites.push_back({first_out, row_paths.back().start_pose(),
-                     fmt::format("row {}, {} end", row.id, compass(first_out.yaw))});
-    sites.push_back({last_out, back.start_pose(),
-                     fmt::format("row {}, {} end", row.id, compass(last_out.yaw))});
+                     fmt::format("row {}, {} end", name, compass(first_out.yaw))});
+    sites.push_back(
+        {last_out, back.start_pose(), fmt::format("row {}, {} end", name, compass(last_out.yaw))});
   }
   sites.insert(sites.end(), stops.begin(), stops.end());
   ways.resize(sites.size() * sites.size());
@@ -360,7 +362,7 @@ Path Transitions::Impl::path(int from, int to) const {
   return {};
 }
 
-Result<Transitions> Transitions::build(const Farm& farm, const std::vector<Row>& rows,
+Result<Transitions> Transitions::build(const Farm& farm, const std::vector<RowRef>& rows,
                                        const std::vector<Site>& stops, const Vehicle& vehicle,
                                        const TransitionOptions& options) {
   const Result<RowBodies> bodies = row_bodies(farm, rows, vehicle.footprint, options.margin_m);

@@ -41,7 +41,7 @@ class Transitions {
  public:
   /// Error kTurnDoesNotFit names the first row end from which nothing can be reached, with the
   /// turning radius and the room there is.
-  static Result<Transitions> build(const Farm& farm, const std::vector<Row>& rows,
+  static Result<Transitions> build(const Farm& farm, const std::vector<RowRef>& rows,
                                    const std::vector<Site>& stops, const Vehicle& vehicle,
                                    const TransitionOptions& options = {});
   ~Transitions();

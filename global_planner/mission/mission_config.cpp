@@ -27,12 +27,14 @@ Result<Pose2> find_place(const Farm& farm, const PlaceConfig& place, const std::
               known_places(farm), {{}, 0, key + ".poi"});
 }
 
-bool wants(const TaskConfig& task, const RowParcel& parcel, const Row& row) {
-  const auto names = [](const std::vector<std::string>& list, const std::string& name) {
-    return std::find(list.begin(), list.end(), name) != list.end();
-  };
-  if (!names(task.cover, "all") && !names(task.cover, parcel.id)) return false;
-  return task.rows.empty() || names(task.rows, parcel.id + "/" + row.id);
+bool names(const std::vector<std::string>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+bool wants(const TaskConfig& task, const Farm& farm, RowRef ref) {
+  const std::string& parcel = farm.row_parcels[static_cast<std::size_t>(ref.parcel)].id;
+  if (!names(task.cover, "all") && !names(task.cover, parcel)) return false;
+  return task.rows.empty() || names(task.rows, farm.row_name(ref));
 }
 
 std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
@@ -46,36 +48,29 @@ std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
                  "allowed: " + known,
                  {{}, 0, key + ".cover"}};
   }
+  std::vector<std::string> known;
+  for (const RowRef ref : farm.all_rows()) known.push_back(farm.row_name(ref));
   for (const std::string& id : task.rows) {
-    bool found = false;
-    for (const RowParcel& parcel : farm.row_parcels) {
-      for (const Row& row : parcel.rows) found = found || parcel.id + "/" + row.id == id;
-    }
-    if (!found) {
-      return Error{ErrorCode::kUnknownName,
-                   "no row '" + id + "' in the farm",
-                   "rows are named parcel/row",
-                   {{}, 0, key + ".rows"}};
-    }
+    if (names(known, id)) continue;
+    return Error{ErrorCode::kUnknownName,
+                 "no row '" + id + "' in the farm",
+                 known.empty() ? "the farm has no rows" : "rows are named like " + known.front(),
+                 {{}, 0, key + ".rows"}};
   }
   return std::nullopt;
 }
 
-Result<std::vector<MissionRow>> rows_to_cover(const MissionConfig& config, const Farm& farm) {
+Result<std::vector<RowRef>> rows_to_cover(const MissionConfig& config, const Farm& farm) {
   for (std::size_t i = 0; i < config.tasks.size(); ++i) {
     if (auto error = check_task_names(config.tasks[i], farm, fmt::format("tasks.{}", i))) {
       return tl::unexpected<Error>(std::move(*error));
     }
   }
-  std::vector<MissionRow> rows;
-  for (std::size_t p = 0; p < farm.row_parcels.size(); ++p) {
-    const RowParcel& parcel = farm.row_parcels[p];
-    for (const Row& row : parcel.rows) {
-      const bool wanted =
-          std::any_of(config.tasks.begin(), config.tasks.end(),
-                      [&](const TaskConfig& task) { return wants(task, parcel, row); });
-      if (wanted) rows.push_back({static_cast<int>(p), Row{parcel.id + "/" + row.id, row.line}});
-    }
+  std::vector<RowRef> rows;
+  for (const RowRef ref : farm.all_rows()) {
+    const bool wanted = std::any_of(config.tasks.begin(), config.tasks.end(),
+                                    [&](const TaskConfig& task) { return wants(task, farm, ref); });
+    if (wanted) rows.push_back(ref);
   }
   if (rows.empty()) {
     return fail(ErrorCode::kNoRows, "the tasks cover no row of the farm",

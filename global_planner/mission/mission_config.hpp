@@ -119,18 +119,12 @@ struct MissionVehicle {
   Pose2 finish;
 };
 
-/// A row to be driven, and the parcel it belongs to.
-struct MissionRow {
-  int parcel = 0;  ///< index in the farm's row parcels
-  Row row;         ///< its id is "parcel/row"
-};
-
 /// A mission ready to be planned.
 struct Mission {
   MissionConfig config;
   Farm farm;
   std::vector<MissionVehicle> vehicles;
-  std::vector<MissionRow> rows;
+  std::vector<RowRef> rows;  ///< to be driven
 };
 
 /// Loads the farm and vehicles that a mission's configuration names. Paths are relative to

@@ -2,8 +2,9 @@
 #include "global_planner/mission/mission_plan.hpp"
 
 #include <algorithm>
-#include <fmt/format.h>
 #include <limits>
+
+#include <fmt/format.h>
 
 #include "global_planner/coverage/transitions.hpp"
 #include "global_planner/mission/internal/plan_builder.hpp"
@@ -36,6 +37,7 @@ RowTourProblem tour_problem(const Transitions& transitions, const SiteIndex& sit
 // The recharge problem of one order of rows: straight on, or by way of a charger, in every gap.
 RechargeProblem recharge_problem(const Mission& mission, const Transitions& transitions,
                                  const SiteIndex& sites, const std::vector<RowVisit>& visits) {
+  const std::vector<DriveCost> rows = mission::row_costs(mission);
   const MissionVehicle& vehicle = mission.vehicles.front();
   const Battery& battery = vehicle.vehicle.battery;
   const Objective objective = mission.config.objective;
@@ -60,8 +62,7 @@ RechargeProblem recharge_problem(const Mission& mission, const Transitions& tran
     }
     problem.gaps.push_back(std::move(ways));
     if (gap == visits.size()) break;
-    const Polyline& line = mission.rows[static_cast<std::size_t>(visits[gap].row)].row.line;
-    problem.item_energy_j.push_back(drive_cost(vehicle.vehicle, LegKind::kRow, length(line)).energy_j);
+    problem.item_energy_j.push_back(rows[static_cast<std::size_t>(visits[gap].row)].energy_j);
   }
   return problem;
 }
@@ -69,9 +70,8 @@ RechargeProblem recharge_problem(const Mission& mission, const Transitions& tran
 // Cost of all rows in the objective's unit: the same in every plan.
 double work_value(const Mission& mission) {
   double value = 0.0;
-  for (const MissionRow& row : mission.rows) {
-    value += drive_cost(mission.vehicles.front().vehicle, LegKind::kRow, length(row.row.line))
-                 .value(mission.config.objective);
+  for (const DriveCost& cost : mission::row_costs(mission)) {
+    value += cost.value(mission.config.objective);
   }
   return value;
 }
@@ -92,7 +92,13 @@ Result<Order> charged_order(const Mission& mission, const Transitions& transitio
                             const SiteIndex& sites, const RowTour& tour) {
   const auto charged = [&](std::vector<RowVisit> visits) -> Result<Order> {
     auto plan = plan_recharges(recharge_problem(mission, transitions, sites, visits));
-    if (!plan) return tl::unexpected<Error>(plan.error());
+    if (!plan) {
+      std::vector<RowRef> in_order;
+      for (const RowVisit& visit : visits) {
+        in_order.push_back(mission.rows[static_cast<std::size_t>(visit.row)]);
+      }
+      return tl::unexpected<Error>(mission::with_row_name(plan.error(), "item", mission, in_order));
+    }
     return Order{std::move(visits), std::move(*plan)};
   };
   auto forwards = charged(tour.visits);
@@ -104,8 +110,8 @@ Result<Order> charged_order(const Mission& mission, const Transitions& transitio
 }
 
 // No plan is cheaper than the rows, the cheapest order, and the detours that the battery forces.
-double plan_lower_bound(const Mission& mission, const Transitions& transitions, const SiteIndex& sites,
-                        const RowTour& tour) {
+double plan_lower_bound(const Mission& mission, const Transitions& transitions,
+                        const SiteIndex& sites, const RowTour& tour) {
   return work_value(mission) + tour.lower_bound +
          mission::forced_detours(mission, transitions, sites, tour.lower_bound);
 }
@@ -115,22 +121,22 @@ double plan_lower_bound(const Mission& mission, const Transitions& transitions, 
 Result<MissionPlan> plan_mission(const Mission& mission) {
   const MissionVehicle& vehicle = mission.vehicles.front();
   const PlannerConfig& config = mission.config.planner;
-  std::vector<Row> rows;
-  for (const MissionRow& row : mission.rows) { rows.push_back(row.row); rows.back().id = row.row.id.substr(row.row.id.find(char(47))+1); }
-
-  const SiteIndex sites{static_cast<int>(rows.size()), static_cast<int>(mission.farm.chargers.size())};
+  const SiteIndex sites{static_cast<int>(mission.rows.size()),
+                        static_cast<int>(mission.farm.chargers.size())};
   TransitionOptions options;
   options.objective = mission.config.objective;
   options.margin_m = config.margin_m;
   options.fishtail = config.fishtail;
   options.reeds_shepp = config.reeds_shepp;
   const auto transitions =
-      Transitions::build(mission.farm, rows, stops_of(mission), vehicle.vehicle, options);
+      Transitions::build(mission.farm, mission.rows, stops_of(mission), vehicle.vehicle, options);
   if (!transitions) return tl::unexpected<Error>(transitions.error());
 
   const auto tour = solve_row_tour(tour_problem(*transitions, sites),
                                    {config.seed, config.iterations, config.exact_up_to_rows});
-  if (!tour) return tl::unexpected<Error>(mission::with_row_name(tour.error(), mission));
+  if (!tour)
+    return tl::unexpected<Error>(
+        mission::with_row_name(tour.error(), "row", mission, mission.rows));
   const auto order = charged_order(mission, *transitions, sites, *tour);
   if (!order) return tl::unexpected<Error>(order.error());
 
@@ -138,11 +144,8 @@ Result<MissionPlan> plan_mission(const Mission& mission) {
   plan.objective = mission.config.objective;
   plan.value = work_value(mission) + order->recharges.cost;
   plan.lower_bound = std::min(plan.value, plan_lower_bound(mission, *transitions, sites, *tour));
-  plan.status = tour->optimal && order->recharges.stops.empty() ? PlanStatus::kOptimal
-                                                               : PlanStatus::kFeasible;
-  if (plan.status == PlanStatus::kOptimal) plan.lower_bound = plan.value;
-  plan.vehicles.push_back(
-      mission::build_vehicle_plan(mission, *transitions, sites, order->visits, order->recharges.stops));
+  plan.vehicles.push_back(mission::build_vehicle_plan(mission, *transitions, sites, order->visits,
+                                                      order->recharges.stops));
   mission::add_totals(plan);
   return plan;
 }

@@ -41,7 +41,6 @@ enum class PlanStatus { kOptimal, kFeasible };
 
 /// The global layer's answer.
 struct MissionPlan {
-  PlanStatus status = PlanStatus::kFeasible;
   Objective objective = Objective::kEnergy;
   double value = 0.0;        ///< of the objective, rows included
   double lower_bound = 0.0;  ///< no plan for this mission is cheaper
@@ -53,6 +52,10 @@ struct MissionPlan {
   std::vector<VehiclePlan> vehicles;
 
   double gap_ratio() const { return value > 0.0 ? (value - lower_bound) / value : 0.0; }
+  /// Optimal where the bound proves it.
+  PlanStatus status() const {
+    return gap_ratio() <= 1e-9 ? PlanStatus::kOptimal : PlanStatus::kFeasible;
+  }
 };
 
 /// Plans a mission: verified ways between all row ends and chargers, the cheapest order of rows, the

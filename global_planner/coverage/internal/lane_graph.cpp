@@ -175,40 +175,40 @@ void LaneGraph::sort_steps() {
   step_begin_.assign(all + 1, 0);
   for (const Step& step : steps_) ++step_begin_[static_cast<std::size_t>(step.from) + 1];
   for (std::size_t n = 0; n < all; ++n) step_begin_[n + 1] += step_begin_[n];
+  arcs_.clear();
+  for (const Step& step : steps_) arcs_.push_back({step.cost, step.to});
 }
 
-std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) const {
-  struct Option {
-    double cost;
-    double lead;
-    double radius;
-    int node;
-    bool known;
-  };
-  const auto costs_more = [](const Option& a, const Option& b) {
-    return std::tie(a.cost, a.node, a.lead, a.radius) > std::tie(b.cost, b.node, b.lead, b.radius);
-  };
-  const auto curve_to = [&](const Option& option) {
-    const Pose2 from = advance(port.end.out, 0.0, option.lead);
-    const Pose2 to = pose(option.node);
-    return without_slivers(reversing ? shortest_reeds_shepp(from, to, option.radius)
-                                     : shortest_dubins(from, to, option.radius));
-  };
-  std::vector<Option> heap;
-  for (double lead = 0.0; lead <= port.end.free_run; lead += kConnectionStep) {
-    const Pose2 from = advance(port.end.out, 0.0, lead);
+Curve LaneGraph::Option::curve(const LaneGraph& graph, const Pose2& out, bool reversing) const {
+  const Pose2 from = advance(out, 0.0, lead);
+  const Pose2 to = graph.pose(node);
+  return without_slivers(reversing ? shortest_reeds_shepp(from, to, radius)
+                                   : shortest_dubins(from, to, radius));
+}
+
+// All tracks out of a port, by a lower bound of their cost.
+std::vector<LaneGraph::Option> LaneGraph::options(const TurnEnd& end) const {
+  std::vector<Option> all;
+  for (double lead = 0.0; lead <= end.free_run; lead += kConnectionStep) {
+    const Pose2 from = advance(end.out, 0.0, lead);
     visit_near(from.position(), reach_, [&](int i) {
       for (const int node : {2 * i, 2 * i + 1}) {
         const Pose2 to = pose(node);
         const double distance = (to.position() - from.position()).norm();
         const double least = std::max(distance, radius_ * std::abs(wrap_angle(to.yaw - from.yaw)));
-        heap.push_back({rate_.of(lead + least, 0), lead, radius_, node, false});
+        all.push_back({rate_.of(lead + least, 0), lead, radius_, node, false});
       }
     });
   }
+  return all;
+}
+
+std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) const {
+  const auto costs_more = [](const Option& a, const Option& b) {
+    return std::tie(a.cost, a.node, a.lead, a.radius) > std::tie(b.cost, b.node, b.lead, b.radius);
+  };
   std::vector<Connection> found;
   std::vector<double> costs;  // of those found
-  std::vector<int> settled;   // nodes found, or beyond one that is
   const auto beyond_another = [&](const Option& option) {
     for (std::size_t k = 0; k < found.size(); ++k) {
       const double on = dubins_length(pose(found[k].node), pose(option.node), radius_);
@@ -216,34 +216,35 @@ std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) con
     }
     return false;
   };
+  std::vector<int> settled;  // nodes found, or beyond one that is
+  std::vector<Option> heap = options(port.end);
   std::make_heap(heap.begin(), heap.end(), costs_more);
   while (!heap.empty() && found.size() < kConnections) {
     std::pop_heap(heap.begin(), heap.end(), costs_more);
-    Option& option = heap.back();
-    if (std::find(settled.begin(), settled.end(), option.node) != settled.end()) {
-      heap.pop_back();
-      continue;
-    }
-    const Curve curve = curve_to(option);
+    Option option = heap.back();
+    heap.pop_back();
+    if (std::find(settled.begin(), settled.end(), option.node) != settled.end()) continue;
+    const Curve curve = option.curve(*this, port.end.out, reversing);
     if (!option.known) {
       option.cost = rate_.of(option.lead + curve.length(), curve.cusps());
       option.known = true;
-      std::push_heap(heap.begin(), heap.end(), costs_more);
+    } else if (beyond_another(option)) {
+      settled.push_back(option.node);
+      continue;
+    } else if (space_.fits(advance(port.end.out, 0.0, option.lead), curve, port.travel,
+                           {port.end.row, -1})) {
+      settled.push_back(option.node);
+      found.push_back({option.node, {option.lead, 0.0, curve}});
+      costs.push_back(option.cost);
+      continue;
+    } else if (option.radius == radius_ && !reversing) {
+      option.radius = kGentle * radius_;
+      option.known = false;
+    } else {
       continue;
     }
-    const Option chosen = option;
-    heap.pop_back();
-    if (beyond_another(chosen)) {
-      settled.push_back(chosen.node);
-    } else if (space_.fits(advance(port.end.out, 0.0, chosen.lead), curve, port.travel,
-                           {port.end.row, -1})) {
-      settled.push_back(chosen.node);
-      found.push_back({chosen.node, {chosen.lead, 0.0, curve}});
-      costs.push_back(chosen.cost);
-    } else if (chosen.radius == radius_ && !reversing) {
-      heap.push_back({chosen.cost, chosen.lead, kGentle * radius_, chosen.node, false});
-      std::push_heap(heap.begin(), heap.end(), costs_more);
-    }
+    heap.push_back(option);
+    std::push_heap(heap.begin(), heap.end(), costs_more);
   }
   return found;
 }
@@ -310,20 +311,17 @@ void LaneGraph::Search::run(const std::vector<Connection>& from) {
   std::fill(cost_.begin(), cost_.end(), kInfinity);
   std::fill(last_step_.begin(), last_step_.end(), -1);
   queue_.clear();
-  const auto reach = [this](int node, double cost, double length, int cusps, int step) {
+  const auto reach = [this](int node, double cost, int step) {
     const auto n = static_cast<std::size_t>(node);
     if (cost >= cost_[n]) return;
     cost_[n] = cost;
-    length_[n] = length;
-    cusps_[n] = cusps;
     last_step_[n] = step;
     queue_.emplace_back(cost, node);
     std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
   };
   for (std::size_t c = 0; c < from.size(); ++c) {
     const Turn& turn = from[c].turn;
-    reach(from[c].node, graph_.rate_.of(turn.length(), turn.cusps()), turn.length(), turn.cusps(),
-          -2 - static_cast<int>(c));
+    reach(from[c].node, graph_.rate_.of(turn.length(), turn.cusps()), -2 - static_cast<int>(c));
   }
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
@@ -331,11 +329,27 @@ void LaneGraph::Search::run(const std::vector<Connection>& from) {
     queue_.pop_back();
     const auto n = static_cast<std::size_t>(node);
     if (cost > cost_[n]) continue;
+    settle(n, from);
     for (int s = graph_.step_begin_[n]; s < graph_.step_begin_[n + 1]; ++s) {
-      const Step& step = graph_.steps_[static_cast<std::size_t>(s)];
-      reach(step.to, cost + step.cost, length_[n] + step.length, cusps_[n] + step.cusps, s);
+      const Arc& arc = graph_.arcs_[static_cast<std::size_t>(s)];
+      reach(arc.to, cost + arc.cost, s);
     }
   }
+}
+
+// The node's cheapest way is known: so are its length and its changes of gear.
+void LaneGraph::Search::settle(std::size_t node, const std::vector<Connection>& from) {
+  const int last = last_step_[node];
+  if (last < -1) {
+    const Turn& turn = from[static_cast<std::size_t>(-2 - last)].turn;
+    length_[node] = turn.length();
+    cusps_[node] = turn.cusps();
+    return;
+  }
+  const Step& step = graph_.steps_[static_cast<std::size_t>(last)];
+  const auto before = static_cast<std::size_t>(step.from);
+  length_[node] = length_[before] + step.length;
+  cusps_[node] = cusps_[before] + step.cusps;
 }
 
 int LaneGraph::Search::best_entry(const std::vector<Connection>& port) const {

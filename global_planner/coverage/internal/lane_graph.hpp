@@ -63,6 +63,7 @@ class LaneGraph {
                  const std::vector<Connection>& port) const;
 
    private:
+    void settle(std::size_t node, const std::vector<Connection>& from);
     int best_entry(const std::vector<Connection>& port) const;
 
     const LaneGraph& graph_;
@@ -88,6 +89,20 @@ class LaneGraph {
     int passage = -1;       // kIntoRow, kOutOfRow
     int connection = -1;
   };
+  // Of a step, what Dijkstra's inner loop needs.
+  struct Arc {
+    double cost;
+    int to;
+  };
+  // A track from a port to a node.
+  struct Option {
+    double cost;  // a lower bound until the curve is known
+    double lead;
+    double radius;
+    int node;
+    bool known;
+    Curve curve(const LaneGraph& graph, const Pose2& out, bool reversing) const;
+  };
   struct Candidate {
     double length;
     int from;
@@ -97,6 +112,7 @@ class LaneGraph {
   template <class Visit>
   void visit_near(const Point2& p, double distance, Visit visit) const;
   std::vector<Candidate> candidates() const;
+  std::vector<Option> options(const TurnEnd& end) const;
   bool bypassed(const Candidate& edge) const;
   void join(const std::vector<Candidate>& candidates);
   double fitting_radius(const Candidate& edge) const;
@@ -111,6 +127,7 @@ class LaneGraph {
   CostRate rate_;
   std::vector<Passage> passages_;
   std::vector<Step> steps_;      // by their beginning
+  std::vector<Arc> arcs_;        // of the steps, in their order
   std::vector<int> step_begin_;  // of node n: [step_begin_[n], step_begin_[n + 1])
   std::vector<std::vector<std::pair<int, double>>> accepted_;  // while joining: to, length
   // Poses in a grid of cells `reach_` wide.

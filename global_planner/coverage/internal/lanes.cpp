@@ -47,31 +47,41 @@ std::vector<Pose2> poses_along(const Polyline& line, bool closed, double spacing
   return poses;
 }
 
-// Finds whether a pose lies near others, in a grid.
+// Poses in a grid, to find those near a place.
 class NearbyPoses {
  public:
   explicit NearbyPoses(double cell) : cell_(cell) {}
-  void add(const Point2& p) { cells_[key(p, 0, 0)].push_back(p); }
+  void add(const Pose2& pose) { cells_[key(pose.position(), 0, 0)].push_back(pose); }
   bool any_within(const Point2& p, double distance) const {
+    return any_around(p, [&](const Pose2& q) { return (p - q.position()).norm() < distance; });
+  }
+  // A pose that serves as well: about as far along, and in the same line.
+  bool any_alike(const Pose2& pose) const {
+    return any_around(pose.position(), [&](const Pose2& q) {
+      const Point2 d = q.position() - pose.position();
+      return std::abs(d.dot(pose.heading())) < 0.5 * cell_ && std::abs(d.dot(pose.left())) < 0.7 &&
+             std::abs(std::sin(q.yaw - pose.yaw)) < 0.05;
+    });
+  }
+
+ private:
+  template <class Test>
+  bool any_around(const Point2& p, Test test) const {
     for (int dx = -1; dx <= 1; ++dx) {
       for (int dy = -1; dy <= 1; ++dy) {
         const auto cell = cells_.find(key(p, dx, dy));
         if (cell == cells_.end()) continue;
-        for (const Point2& q : cell->second) {
-          if ((p - q).norm() < distance) return true;
-        }
+        if (std::any_of(cell->second.begin(), cell->second.end(), test)) return true;
       }
     }
     return false;
   }
-
- private:
   std::pair<int, int> key(const Point2& p, int dx, int dy) const {
     return {static_cast<int>(std::floor(p.x() / cell_)) + dx,
             static_cast<int>(std::floor(p.y() / cell_)) + dy};
   }
   double cell_;
-  std::map<std::pair<int, int>, std::vector<Point2>> cells_;
+  std::map<std::pair<int, int>, std::vector<Pose2>> cells_;
 };
 
 // Ends of a segment, and where others meet it.
@@ -195,9 +205,10 @@ class LaneMaker {
     std::vector<Pose2> fitting;
     for (const Pose2& pose : poses) {
       if (apart > 0.0 && nearby_.any_within(pose.position(), apart)) continue;
+      if (nearby_.any_alike(pose)) continue;
       if (space_.fits(pose, Travel::kBoth, {})) fitting.push_back(pose);
     }
-    for (const Pose2& pose : fitting) nearby_.add(pose.position());
+    for (const Pose2& pose : fitting) nearby_.add(pose);
     poses_.insert(poses_.end(), fitting.begin(), fitting.end());
   }
 

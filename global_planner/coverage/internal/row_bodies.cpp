@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
-#include <string>
+#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,39 +47,23 @@ double nearest_neighbour(const std::vector<RowBody>& bodies, std::size_t row, do
 
 }  // namespace
 
-Result<RowBodies> row_bodies(const Farm& farm, const std::vector<Row>& rows,
+Result<RowBodies> row_bodies(const Farm& farm, const std::vector<RowRef>& rows,
                              const Footprint& outline, double margin) {
   RowBodies result;
-  result.parcels.resize(farm.row_parcels.size() + 1);  // the last: of no parcel
-  std::map<std::string, std::size_t, std::less<>> parcel_of;
-  for (std::size_t p = 0; p < farm.row_parcels.size(); ++p) {
-    for (const Row& row : farm.row_parcels[p].rows) parcel_of.emplace(row.id, p);
-  }
-  std::map<std::string, bool, std::less<>> given;
+  result.parcels.resize(farm.row_parcels.size());
   std::vector<double> spacings;
-  const auto add = [&](const Row& row, std::size_t parcel) {
-    result.bodies.push_back({simplified(row.line, kSurveyTolerance), 0.0});
-    const bool known = parcel < farm.row_parcels.size();
-    spacings.push_back(known ? farm.row_parcels[parcel].row_spacing_m : 0.0);
+  const auto add = [&](RowRef ref) {
+    result.bodies.push_back({simplified(farm.row(ref).line, kSurveyTolerance), 0.0});
+    spacings.push_back(farm.row_parcels[static_cast<std::size_t>(ref.parcel)].row_spacing_m);
   };
+  std::set<std::pair<int, int>> given;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const auto found = parcel_of.find(rows[r].id);
-    std::size_t parcel = found != parcel_of.end() ? found->second : 0;
-    if (found == parcel_of.end()) {
-      const Point2 middle = along(rows[r].line, 0.5);
-      while (parcel < farm.row_parcels.size() &&
-             !contains(farm.row_parcels[parcel].boundary, middle)) {
-        ++parcel;
-      }
-    }
-    add(rows[r], parcel);
-    result.parcels[parcel].push_back(static_cast<int>(r));
-    given[rows[r].id] = true;
+    add(rows[r]);
+    result.parcels[static_cast<std::size_t>(rows[r].parcel)].push_back(static_cast<int>(r));
+    given.emplace(rows[r].parcel, rows[r].row);
   }
-  for (std::size_t p = 0; p < farm.row_parcels.size(); ++p) {
-    for (const Row& row : farm.row_parcels[p].rows) {
-      if (given.find(row.id) == given.end()) add(row, p);
-    }
+  for (const RowRef ref : farm.all_rows()) {
+    if (given.count({ref.parcel, ref.row}) == 0) add(ref);
   }
   result.margin = margin;
   for (std::size_t b = 0; b < result.bodies.size(); ++b) {
@@ -88,8 +72,8 @@ Result<RowBodies> row_bodies(const Farm& farm, const std::vector<Row>& rows,
         nearest_neighbour(result.bodies, b, spacings[b] > 0.0 ? spacings[b] : lone);
     if (b < rows.size() && outline.width_m > spacing) {
       return fail(ErrorCode::kTurnDoesNotFit,
-                  fmt::format("row {} is {:.2f} m wide, the vehicle {:.2f} m", rows[b].id, spacing,
-                              outline.width_m),
+                  fmt::format("row {} is {:.2f} m wide, the vehicle {:.2f} m",
+                              farm.row_name(rows[b]), spacing, outline.width_m),
                   "use a narrower vehicle, or correct row_spacing_m");
     }
     result.bodies[b].spacing = std::max(spacing, 0.1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 namespace headland::mission {
 namespace {
@@ -33,9 +34,10 @@ class TourBuilder {
   }
 
   void add_row(const RowVisit& visit) {
-    const Row& row = mission_.rows[static_cast<std::size_t>(visit.row)].row;
-    const Path path = row_path(row, visit.entry, plan_.vehicle.turning_radius());
-    add_leg(LegKind::kRow, row.id, path, drive_cost(plan_.vehicle, LegKind::kRow, path.length()));
+    const RowRef ref = mission_.rows[static_cast<std::size_t>(visit.row)];
+    const Path path = row_path(mission_.farm.row(ref), visit.entry, plan_.vehicle.turning_radius());
+    add_leg(LegKind::kRow, mission_.farm.row_name(ref), path,
+            drive_cost(plan_.vehicle, LegKind::kRow, path.length()));
   }
 
   void add_charge(int charger_index) {
@@ -68,47 +70,47 @@ class TourBuilder {
   double soc_ = 1.0;
 };
 
+// Smallest extra of going from anywhere to anywhere else by way of a charger.
+double least_detour(const Eigen::MatrixXd& cost, const SiteIndex& sites) {
+  double least = kInfinity;
+  const int ends = 2 * sites.rows;
+  for (int c = 0; c < sites.chargers; ++c) {
+    const int charger = sites.charger(c);
+    for (int from = 0; from < ends + 1; ++from) {
+      for (int to = 0; to < ends + 2; ++to) {
+        const bool same_row = from < ends && to < ends && from / 2 == to / 2;
+        if (to == sites.start() || same_row) continue;
+        const double by_way = cost(from, charger) + cost(charger, to);
+        if (std::isfinite(by_way)) least = std::min(least, by_way - cost(from, to));
+      }
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 double forced_detours(const Mission& mission, const Transitions& transitions,
                       const SiteIndex& sites, double tour_bound) {
+  if (sites.chargers == 0) return 0.0;
   const MissionVehicle& vehicle = mission.vehicles.front();
   const Battery& battery = vehicle.vehicle.battery;
-  double energy = 0.0;
-  for (const MissionRow& row : mission.rows) {
-    energy += drive_cost(vehicle.vehicle, LegKind::kRow, length(row.row.line)).energy_j;
-  }
+  RechargeBound bound;
+  for (const DriveCost& cost : row_costs(mission)) bound.energy_j += cost.energy_j;
   // Only where energy is the objective does the tour's bound speak of energy.
-  if (mission.config.objective == Objective::kEnergy) energy += tour_bound;
-  const double capacity = battery.capacity_j();
-  const double first = (vehicle.soc - battery.reserve_soc) * capacity;
-  const double per_charge = (1.0 - battery.reserve_soc) * capacity;
-  const double stops = std::max(0.0, std::ceil((energy - first) / per_charge - 1e-9));
-  if (stops == 0.0 || sites.chargers == 0) return 0.0;
-
-  // Smallest extra of going from any row end (or the start) to any other by way of a charger.
-  const Eigen::MatrixXd cost = transitions.matrix();
-  double detour = kInfinity;
-  for (int c = 0; c < sites.chargers; ++c) {
-    for (int from = 0; from <= sites.start(); ++from) {
-      for (int to = 0; to <= sites.finish(); ++to) {
-        if (to == sites.start() || from == to || (to / 2 == from / 2 && to < sites.start()))
-          continue;
-        const double extra =
-            cost(from, sites.charger(c)) + cost(sites.charger(c), to) - cost(from, to);
-        if (extra < detour) detour = extra;
-      }
-    }
+  if (mission.config.objective == Objective::kEnergy) bound.energy_j += tour_bound;
+  bound.start_j = (vehicle.soc - battery.reserve_soc) * battery.capacity_j();
+  bound.per_charge_j = (1.0 - battery.reserve_soc) * battery.capacity_j();
+  if (min_charge_stops(bound) <= 0) return 0.0;
+  bound.detour_cost = std::max(0.0, least_detour(transitions.matrix(), sites));
+  if (!std::isfinite(bound.detour_cost)) return 0.0;
+  double charging = 0.0;
+  if (mission.config.objective == Objective::kTime) {
+    double power = 0.0;
+    for (const Charger& charger : mission.farm.chargers) power = std::max(power, charger.power_w);
+    charging = (bound.energy_j - bound.start_j) / power;
   }
-  const double charging =
-      mission.config.objective == Objective::kTime && energy > first
-          ? (energy - first) /
-                std::max_element(
-                    mission.farm.chargers.begin(), mission.farm.chargers.end(),
-                    [](const Charger& a, const Charger& b) { return a.power_w < b.power_w; })
-                    ->power_w
-          : 0.0;
-  return std::isfinite(detour) ? stops * std::max(0.0, detour) + charging : 0.0;
+  return recharge_lower_bound(bound) + charging;
 }
 
 VehiclePlan build_vehicle_plan(const Mission& mission, const Transitions& transitions,
@@ -157,19 +159,27 @@ void add_totals(MissionPlan& plan) {
   }
 }
 
-Error with_row_name(Error error, const Mission& mission) {
-  // "row 12 ..." -> "row 2019-a-3/r4 ..."
-  const std::string word = "row ";
-  const auto at = error.what.find(word);
+std::vector<DriveCost> row_costs(const Mission& mission) {
+  const Vehicle& vehicle = mission.vehicles.front().vehicle;
+  std::vector<DriveCost> costs;
+  for (const RowRef ref : mission.rows) {
+    const Path path = row_path(mission.farm.row(ref), 0, vehicle.turning_radius());
+    costs.push_back(drive_cost(vehicle, LegKind::kRow, path.length()));
+  }
+  return costs;
+}
+
+Error with_row_name(Error error, const std::string& word, const Mission& mission,
+                    const std::vector<RowRef>& numbered) {
+  const auto at = error.what.find(word + " ");
   if (at == std::string::npos) return error;
-  const auto begin = at + word.size();
-  auto end = begin;
-  while (end < error.what.size() && std::isdigit(static_cast<unsigned char>(error.what[end])) != 0)
-    ++end;
+  const auto begin = at + word.size() + 1;
+  const auto end = error.what.find_first_not_of("0123456789", begin);
   if (end == begin) return error;
-  const auto index = static_cast<std::size_t>(std::stoi(error.what.substr(begin, end - begin)));
-  if (index < mission.rows.size())
-    error.what.replace(begin, end - begin, mission.rows[index].row.id);
+  const auto index = static_cast<std::size_t>(std::stoi(error.what.substr(begin)));
+  if (index < numbered.size()) {
+    error.what.replace(at, end - at, "row " + mission.farm.row_name(numbered[index]));
+  }
   return error;
 }
 

@@ -33,7 +33,12 @@ VehiclePlan build_vehicle_plan(const Mission& mission, const Transitions& transi
 /// Sums over all vehicles' legs into the plan's totals.
 void add_totals(MissionPlan& plan);
 
-/// The tour solver speaks of row numbers; this names the mission's rows beside them.
-Error with_row_name(Error error, const Mission& mission);
+/// What driving each of the mission's rows costs, in their order.
+std::vector<DriveCost> row_costs(const Mission& mission);
+
+/// The solvers speak of numbers ("row 4", "item 4"); this puts the rows' names in their place.
+/// `numbered`: the rows, by the number behind `word`.
+Error with_row_name(Error error, const std::string& word, const Mission& mission,
+                    const std::vector<RowRef>& numbered);
 
 }  // namespace headland::mission

@@ -13,7 +13,11 @@ namespace {
 // are (t2, t3), (t4, t5), (t6, t1), or (t4, t1) with two edges (Lin and Kernighan 1973).
 
 constexpr int kThirdBreadth = 5;  // neighbours tried for the third edge
-constexpr int kLongestSegment = 30;
+// Segments of a kick are mostly short, so that it costs little; now and then long enough to change
+// the order of whole blocks.
+constexpr int kShortSegment = 30;
+constexpr int kLongSegment = 300;
+constexpr double kLongShare = 0.1;
 
 }  // namespace
 
@@ -90,7 +94,7 @@ bool LocalSearch::improve_at(int t1) {
     const int t3 = n3.end;
     if (t3 == t1) continue;
     const int t4 = mate(t3);
-    if (is_entry(t3) == is_entry(t2)) try_two(t1, t2, t3, t4, best);
+    if (is_entry(t3) == is_entry(t2)) try_two(t1, t3, best);
     const double sum2 = gain1 + edge_cost(edge_of(t3));
     int breadth = kThirdBreadth;
     for (const Neighbour& n5 : neighbours_[static_cast<std::size_t>(t4)]) {
@@ -105,7 +109,7 @@ bool LocalSearch::improve_at(int t1) {
   return true;
 }
 
-void LocalSearch::try_two(int t1, int t2, int t3, int t4, Move& best) const {
+void LocalSearch::try_two(int t1, int t3, Move& best) const {
   int i = edge_of(t1);
   int j = edge_of(t3);
   if (i > j) std::swap(i, j);
@@ -115,8 +119,6 @@ void LocalSearch::try_two(int t1, int t2, int t3, int t4, Move& best) const {
   const int d = next_at(j);
   const double change = cycle_.directed(a, c) + cycle_.directed(b, d) + reversal(i + 1, j) -
                         cycle_.directed(a, b) - cycle_.directed(c, d);
-  static_cast<void>(t2);
-  static_cast<void>(t4);
   if (change < best.change) best = {Kind::kBr, change, i, j, j};
 }
 
@@ -206,7 +208,8 @@ void LocalSearch::touch(int first, int last) {
 }
 
 void LocalSearch::kick(RandomStream& random) {
-  const int longest = std::min(kLongestSegment, (rows() - 1) / 3);
+  const int limit = random.uniform() < kLongShare ? kLongSegment : kShortSegment;
+  const int longest = std::min(limit, (rows() - 1) / 3);
   const int b = 1 + random.index(longest);
   const int c = 1 + random.index(longest);
   const int d = 1 + random.index(longest);
@@ -274,7 +277,7 @@ Entries iterated_local_search(const Cycle& cycle, const Neighbours& neighbours, 
     search.kick(random);
     search.descend();
     // Slightly dearer orders are kept too, ever fewer of them.
-    const double warmth = 0.05 * cycle.step() * (1.0 - iteration / (1.0 * iterations));
+    const double warmth = cycle.step() * (1.0 - iteration / static_cast<double>(iterations));
     if (search.cost() < current - warmth * std::log(1.0 - random.uniform())) {
       search.keep();
       current = search.cost();

@@ -62,7 +62,7 @@ class LocalSearch {
   double reversal(int first, int last) const;
 
   bool improve_at(int end);
-  void try_two(int t1, int t2, int t3, int t4, Move& best) const;
+  void try_two(int t1, int t3, Move& best) const;
   void try_three(const int (&t)[6], Move& best) const;
   void apply(const Move& move);
   void reverse(int first, int last);
@@ -92,7 +92,8 @@ class LocalSearch {
   Entries scratch_;
 };
 
-/// Iterated local search: `iterations` kicks from a greedy order, ending early at `stop_cost`.
+/// Iterated local search: `iterations` kicks from `entries`, keeping slightly dearer
+/// orders too at first; ends early at `stop_cost`.
 Entries iterated_local_search(const Cycle& cycle, const Neighbours& neighbours, Entries entries,
                               int iterations, double stop_cost, std::uint64_t seed);
 

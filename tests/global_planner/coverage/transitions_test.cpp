@@ -35,7 +35,7 @@ TransitionOptions shortest() {
 
 Transitions built(const Farm& farm, const std::vector<Site>& stops, const Vehicle& vehicle,
                   const TransitionOptions& options = {}) {
-  Result<Transitions> result = Transitions::build(farm, all_rows(farm), stops, vehicle, options);
+  Result<Transitions> result = Transitions::build(farm, farm.all_rows(), stops, vehicle, options);
   if (!result) throw std::runtime_error(to_string(result.error()));
   return std::move(*result);
 }
@@ -198,10 +198,10 @@ TEST(Transitions, ATooNarrowHeadlandIsAnErrorThatSaysWhere) {
   const Farm farm = make_field({6, 40.0, 2.5, 3.5, 1.0, 0.0});
   Vehicle vehicle = tractor();
   vehicle.can_reverse = false;
-  const Result<Transitions> result = Transitions::build(farm, all_rows(farm), {}, vehicle);
+  const Result<Transitions> result = Transitions::build(farm, farm.all_rows(), {}, vehicle);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::kTurnDoesNotFit);
-  for (const char* part : {"row p.1, south end", "(1.3, 0.0)", "3.20 m", "3.8 x 1.5 m", "3.5 m"}) {
+  for (const char* part : {"row p/p.1, south end", "(1.3, 0.0)", "3.20 m", "3.8 x 1.5 m", "3.5 m"}) {
     EXPECT_NE(result.error().what.find(part), std::string::npos) << result.error().what;
   }
   EXPECT_NE(result.error().remedy.find("allow reversing"), std::string::npos);
@@ -209,10 +209,10 @@ TEST(Transitions, ATooNarrowHeadlandIsAnErrorThatSaysWhere) {
 
 TEST(Transitions, AVehicleWiderThanTheRowsIsAnError) {
   const Farm farm = make_field({6, 40.0, 1.4, 20.0, 5.0, 0.0});
-  const Result<Transitions> result = Transitions::build(farm, all_rows(farm), {}, tractor());
+  const Result<Transitions> result = Transitions::build(farm, farm.all_rows(), {}, tractor());
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::kTurnDoesNotFit);
-  EXPECT_NE(result.error().what.find("row p.1 is 1.40 m wide, the vehicle 1.50 m"),
+  EXPECT_NE(result.error().what.find("row p/p.1 is 1.40 m wide, the vehicle 1.50 m"),
             std::string::npos)
       << result.error().what;
 }
@@ -294,7 +294,7 @@ TEST(Transitions, TwoBuildsAreEqualToTheLastBit) {
 TEST(Transitions, RowsLeftOutOfTheTaskAreStillInTheWay) {
   const Farm farm = make_field({9, 40.0, 2.5, 12.0, 8.0, 0.0});
   const std::vector<Row> all = all_rows(farm);
-  const Result<Transitions> ways = Transitions::build(farm, {all[0], all[8]}, {}, tracked_robot());
+  const Result<Transitions> ways = Transitions::build(farm, {{0, 0}, {0, 8}}, {}, tracked_robot());
   ASSERT_TRUE(ways.has_value());
   OutlineChecker checker(farm, all, 2.5, tracked_robot().footprint);
   EXPECT_EQ(checker.complaint(ways->path(0, 2), {0, 8}), "");

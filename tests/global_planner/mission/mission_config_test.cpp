@@ -2,6 +2,7 @@
 #include "global_planner/mission/mission_config.hpp"
 
 #include <cstdlib>
+
 #include <gtest/gtest.h>
 
 #include "core/config/yaml.hpp"
@@ -9,7 +10,8 @@
 namespace headland {
 namespace {
 
-const std::filesystem::path kMissions = std::filesystem::path(HEADLAND_SOURCE_DIR) / "config/missions";
+const std::filesystem::path kMissions =
+    std::filesystem::path(HEADLAND_SOURCE_DIR) / "config/missions";
 
 MissionConfig kiato() {
   MissionConfig config;
@@ -39,11 +41,11 @@ TEST(Mission, CoversNamedRowsOnly) {
   MissionConfig config = kiato();
   const auto all = load_mission(config, kMissions);
   ASSERT_TRUE(all);
-  config.tasks.front().rows = {all->rows[3].row.id, all->rows[5].row.id};
+  config.tasks.front().rows = {all->farm.row_name(all->rows[3]), all->farm.row_name(all->rows[5])};
   const auto mission = load_mission(config, kMissions);
   ASSERT_TRUE(mission) << to_string(mission.error());
   ASSERT_EQ(mission->rows.size(), 2u);
-  EXPECT_EQ(mission->rows[1].row.id, all->rows[5].row.id);
+  EXPECT_EQ(mission->farm.row_name(mission->rows[1]), all->farm.row_name(all->rows[5]));
 }
 
 TEST(Mission, UnknownNamesListTheKnownOnes) {
@@ -54,20 +56,24 @@ TEST(Mission, UnknownNamesListTheKnownOnes) {
       << error_of(config);
   config = kiato();
   config.tasks.front().cover = {"west"};
-  EXPECT_NE(error_of(config).find("no row parcel 'west' in the farm; allowed: all, "), std::string::npos)
+  EXPECT_NE(error_of(config).find("no row parcel 'west' in the farm; allowed: all, "),
+            std::string::npos)
       << error_of(config);
   config = kiato();
   config.tasks.front().rows = {"west/r1"};
-  EXPECT_NE(error_of(config).find("no row 'west/r1' in the farm"), std::string::npos) << error_of(config);
+  EXPECT_NE(error_of(config).find("no row 'west/r1' in the farm"), std::string::npos)
+      << error_of(config);
 }
 
 TEST(Mission, AbsentFilesAreNamed) {
   MissionConfig config = kiato();
   config.vehicles.front().model = "../vehicles/none.yaml";
-  EXPECT_NE(error_of(config).find("none.yaml: no such file"), std::string::npos) << error_of(config);
+  EXPECT_NE(error_of(config).find("none.yaml: no such file"), std::string::npos)
+      << error_of(config);
   config = kiato();
   config.farm = {"none.geojson"};
-  EXPECT_NE(error_of(config).find("none.geojson: no such file"), std::string::npos) << error_of(config);
+  EXPECT_NE(error_of(config).find("none.geojson: no such file"), std::string::npos)
+      << error_of(config);
 }
 
 TEST(Mission, APlaceIsEitherNamedOrGivenByBothCoordinates) {
@@ -94,7 +100,8 @@ TEST(Mission, DataVariableIsReplaced) {
 
 TEST(Mission, EveryShippedVehicleLoads) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(kMissions.parent_path() / "vehicles")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(kMissions.parent_path() / "vehicles")) {
     const auto vehicle = config::load<Vehicle>(entry.path());
     EXPECT_TRUE(vehicle) << to_string(vehicle.error());
     ++count;

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "global_planner/mission/mission_plan.hpp"
 
-#include <gtest/gtest.h>
 #include <set>
+
+#include <gtest/gtest.h>
 
 #include "core/config/yaml.hpp"
 
 namespace headland {
 namespace {
 
-const std::filesystem::path kMissions = std::filesystem::path(HEADLAND_SOURCE_DIR) / "config/missions";
+const std::filesystem::path kMissions =
+    std::filesystem::path(HEADLAND_SOURCE_DIR) / "config/missions";
 
 MissionConfig kiato(double capacity_wh) {
   MissionConfig config;
@@ -41,7 +43,7 @@ TEST(MissionPlan, DrivesEveryRowOnceAndEndsWhereItShould) {
     if (leg.kind == LegKind::kRow) driven.insert(leg.id);
   }
   std::multiset<std::string> wanted;
-  for (const MissionRow& row : mission->rows) wanted.insert(row.row.id);
+  for (const RowRef row : mission->rows) wanted.insert(mission->farm.row_name(row));
   EXPECT_EQ(driven, wanted);
   ASSERT_EQ(vehicle.stages.size(), 1u);
   const Pose2 start = vehicle.stages.front().path.start_pose();
@@ -70,7 +72,7 @@ TEST(MissionPlan, TotalsAreTheSumsOfTheLegs) {
 }
 
 TEST(MissionPlan, RechargesBeforeTheReserveIsTouched) {
-  const auto found = plan(kiato(1000.0));
+  const auto found = plan(kiato(600.0));
   ASSERT_TRUE(found) << to_string(found.error());
   EXPECT_GE(found->charge_stops, 2);
   const VehiclePlan& vehicle = found->vehicles.front();
@@ -85,7 +87,7 @@ TEST(MissionPlan, RechargesBeforeTheReserveIsTouched) {
 }
 
 TEST(MissionPlan, ALargerBatteryNeverCostsMore) {
-  const auto small = plan(kiato(1000.0));
+  const auto small = plan(kiato(600.0));
   const auto large = plan(kiato(4000.0));
   ASSERT_TRUE(small && large);
   EXPECT_LE(large->value, small->value + 1e-6);

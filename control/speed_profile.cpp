@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "control/lookahead_rover/speed_profile.hpp"
+#include "control/speed_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,28 @@ double braking_speed(double distance, double target, double deceleration, double
 
 }  // namespace
 
-void SpeedProfile::build(const Reference& reference, double deceleration) {
+// The knots of one piece: its begin, and the borders of zones inside it.
+void SpeedProfile::add_piece(double begin_s, double end_s, double speed, int segment,
+                             std::span<const SpeedZone> zones) {
+  for (double s = begin_s; s < end_s;) {
+    double next = end_s;
+    double allowed = speed;
+    for (const SpeedZone& zone : zones) {
+      if (zone.begin_s >= end_s) break;
+      if (zone.begin_s > s) {
+        next = std::min(next, zone.begin_s);
+      } else if (zone.end_s > s) {
+        next = std::min(next, zone.end_s);
+        allowed = std::min(allowed, zone.speed);
+      }
+    }
+    knots_.push_back({s, allowed, allowed, segment});
+    s = next;
+  }
+}
+
+void SpeedProfile::build(const Reference& reference, double deceleration,
+                         std::span<const SpeedZone> zones) {
   deceleration_ = deceleration;
   knots_.clear();
   const auto& segments = reference.path.segments();
@@ -32,12 +53,17 @@ void SpeedProfile::build(const Reference& reference, double deceleration) {
       knots_.push_back({s, 0.0, 0.0, static_cast<int>(segment)});
       ++segment;
     }
+    while (!zones.empty() && zones.front().end_s <= s) zones = zones.subspan(1);
     const double speed = leg_speed(reference, piece.leg);
-    knots_.push_back({s, speed, speed, static_cast<int>(segment)});
+    add_piece(s, s + piece.length, speed, static_cast<int>(segment), zones);
     s += piece.length;
   }
   knots_.push_back({s, 0.0, 0.0, static_cast<int>(segment)});
-  // Passing from one leg to the next, the slower of the two counts.
+  brake_in_time();
+}
+
+void SpeedProfile::brake_in_time() {
+  // Passing from one stretch to the next, the slower of the two counts.
   for (std::size_t i = 1; i < knots_.size(); ++i) {
     if (knots_[i].segment == knots_[i - 1].segment) {
       knots_[i].speed = std::min(knots_[i].speed, knots_[i - 1].after);
@@ -47,7 +73,7 @@ void SpeedProfile::build(const Reference& reference, double deceleration) {
   for (std::size_t i = knots_.size() - 1; i-- > 0;) {
     const Knot& next = knots_[i + 1];
     if (next.segment != knots_[i].segment) continue;
-    const double v2 = next.speed * next.speed + 2.0 * deceleration * (next.s - knots_[i].s);
+    const double v2 = next.speed * next.speed + 2.0 * deceleration_ * (next.s - knots_[i].s);
     knots_[i].speed = std::min(knots_[i].speed, std::sqrt(v2));
   }
 }

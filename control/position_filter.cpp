@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "control/lookahead_rover/position_filter.hpp"
+#include "control/position_filter.hpp"
 
 #include <cmath>
 

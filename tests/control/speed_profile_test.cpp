@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "control/lookahead_rover/speed_profile.hpp"
+#include "control/speed_profile.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "control/pure_pursuit/steering_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace headland {
+namespace {
+
+constexpr double kSlowest = 0.1;         // speed that a plan counts with at least [m/s]
+constexpr double kSameCurvature = 1e-6;  // [1/m]
+constexpr int kPasses = 3;  // the rate of curvature depends on the steering, which the solver finds
+
+}  // namespace
+
+// Curvature that changes by c over the length l, centred at the step, leaves the path by c l^2 / 24
+// (twice integrated); the steering takes l = v t for it.
+std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
+                                      const SteeringPlanConfig& config) {
+  std::vector<SpeedZone> zones;
+  double s = 0.0;
+  const PathPiece* before = nullptr;
+  for (const PathPiece& piece : reference.path.pieces()) {
+    if (before != nullptr && before->gear == piece.gear) {
+      const double change = std::abs(piece.curvature - before->curvature);
+      const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
+                                   std::atan(vehicle.wheelbase_m * before->curvature));
+      const double seconds = turn / (config.rate_share * vehicle.steering_rate_radps);
+      const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
+      const double wanted = leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
+      if (change > kSameCurvature && wanted > 0.0) {
+        const double length = std::sqrt(24.0 * config.step_error_m / change);
+        const double speed = std::max(length / seconds, config.least_speed_ratio * wanted);
+        const double half = 0.5 * speed * seconds;
+        if (speed < wanted) zones.push_back({s - half, s + half, speed});
+      }
+    }
+    before = &piece;
+    s += piece.length;
+  }
+  std::stable_sort(zones.begin(), zones.end(), [](const SpeedZone& a, const SpeedZone& b) {
+    return a.begin_s < b.begin_s;
+  });
+  return zones;
+}
+
+struct SteeringPlan::Builder {
+  SteeringPlan& plan;
+  const Reference& reference;
+  const SpeedProfile& speeds;
+  const Vehicle& vehicle;
+  const SteeringPlanConfig& config;
+
+  std::vector<RampCell> cells;
+  std::vector<double> borders;  // driven distance at the cells' borders [m]
+  BoundedRamp solver;
+  RampState state = RampState::Zero();  // at the end of the last window, in its direction of travel
+
+  double steering(double curvature) const { return std::atan(vehicle.wheelbase_m * curvature); }
+
+  // Speed on the segment at s [m/s], starting from a standstill at its begin.
+  double speed(int segment, double s) const {
+    const double begin_s = reference.path.segments()[static_cast<std::size_t>(segment)].begin_s;
+    const double from_rest =
+        std::sqrt(2.0 * vehicle.acceleration_mps2 * std::max(0.0, s - begin_s));
+    return std::max(kSlowest, std::min(from_rest, speeds.limit(s, segment, 0.0)));
+  }
+
+  // The distance that the steering needs for a step of the path's curvature at s [m].
+  double reach(int segment, double s, double from, double to) const {
+    const double seconds = std::abs(steering(to) - steering(from)) / vehicle.steering_rate_radps;
+    return config.margin_m + speed(segment, s) * seconds;
+  }
+
+  void add_windows() {
+    const Path& path = reference.path;
+    double s = 0.0;
+    int segment = 0;
+    double before = path.pieces().front().curvature;
+    for (const PathPiece& piece : path.pieces()) {
+      const bool cusp =
+          s > path.segments()[static_cast<std::size_t>(segment)].end_s - 1e-9 && s > 0.0;
+      if (cusp) ++segment;
+      // A cusp starts a window of its own, as what the last one left over goes on in the next.
+      if (cusp || std::abs(piece.curvature - before) > kSameCurvature) {
+        const double far = cusp ? config.margin_m : reach(segment, s, before, piece.curvature);
+        add_window(segment, s - far, s + far);
+      }
+      before = piece.curvature;
+      s += piece.length;
+    }
+  }
+
+  void add_window(int number, double from_s, double to_s) {
+    const PathSegment& segment = reference.path.segments()[static_cast<std::size_t>(number)];
+    const double begin_s = std::max(from_s, segment.begin_s);
+    const double end_s = std::min(to_s, segment.end_s);
+    auto& windows = plan.windows_;
+    if (!windows.empty() && windows.back().segment == number && windows.back().end_s >= begin_s) {
+      windows.back().end_s = std::max(windows.back().end_s, end_s);
+      windows.back().begin_s = std::min(windows.back().begin_s, begin_s);
+    } else {
+      windows.push_back({begin_s, end_s, number, 0, 0});
+    }
+  }
+
+  void cut_cells(const Window& window, double direction) {
+    cells.clear();
+    borders.assign(1, window.begin_s);
+    double begin_s = 0.0;
+    for (const PathPiece& piece : reference.path.pieces()) {
+      const double from = std::max(begin_s, window.begin_s);
+      begin_s += piece.length;
+      const double length = std::min(begin_s, window.end_s) - from;
+      if (length <= 1e-9) continue;
+      const int count = static_cast<int>(std::ceil(length / config.step_m));
+      for (int i = 0; i < count; ++i) {
+        cells.push_back({length / count, direction * piece.curvature, 0.0});
+        borders.push_back(from + length * (i + 1) / count);
+      }
+    }
+  }
+
+  void bound_rates(int segment, const std::vector<RampState>* states) {
+    const double wheelbase = vehicle.wheelbase_m;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const double kappa = states == nullptr ? cells[i].path_curvature
+                                             : 0.5 * ((*states)[i](2) + (*states)[i + 1](2));
+      const double v = speed(segment, 0.5 * (borders[i] + borders[i + 1]));
+      // kappa = tan(delta) / wheelbase.
+      const double slope = (1.0 + wheelbase * wheelbase * kappa * kappa) / wheelbase;
+      cells[i].rate_bound = config.rate_share * vehicle.steering_rate_radps / v * slope;
+    }
+  }
+
+  // Drives the solver's curvature with the exact steering geometry and path kinematics, so that
+  // the plan can be followed to the letter.
+  void drive(Window& window, double direction, const std::vector<RampState>& ramp) {
+    RampState x = ramp[0];
+    const double limit = vehicle.max_steering_rad();
+    double delta = std::clamp(steering(x(2)), -limit, limit);
+    window.first = plan.nodes_.size();
+    for (std::size_t i = 0;; ++i) {
+      x(2) = std::tan(delta) / vehicle.wheelbase_m;
+      plan.nodes_.push_back({borders[i], {direction * x(2), direction * x(0), x(1)}});
+      if (i == cells.size()) break;
+      const RampCell& cell = cells[i];
+      const double back = 2.0 * (x(0) - ramp[i](0)) + 2.0 * (x(1) - ramp[i](1));
+      const double wanted = std::clamp(steering(ramp[i + 1](2) - back), -limit, limit);
+      const double most = vehicle.steering_rate_radps * cell.length /
+                          speed(window.segment, 0.5 * (borders[i] + borders[i + 1]));
+      delta += std::clamp(wanted - delta, -most, most);
+      const double mean = 0.5 * (x(2) + std::tan(delta) / vehicle.wheelbase_m);
+      // e' = (1 - kp e) tan psi, psi' = kappa (1 - kp e) / cos psi - kp, by the midpoint rule.
+      RampState middle = x + 0.5 * cell.length * slope(x, mean, cell.path_curvature);
+      x += cell.length * slope(middle, mean, cell.path_curvature);
+    }
+    window.last = plan.nodes_.size() - 1;
+    state = x;
+  }
+
+  static RampState slope(const RampState& x, double kappa, double path_curvature) {
+    const double stretch = 1.0 - path_curvature * x(0);
+    return {stretch * std::tan(x(1)), kappa * stretch / std::cos(x(1)) - path_curvature, 0.0};
+  }
+
+  void solve(Window& window, double last_direction) {
+    const PathSegment& segment =
+        reference.path.segments()[static_cast<std::size_t>(window.segment)];
+    const double direction = sign(segment.gear);
+    cut_cells(window, direction);
+    const bool at_rest = window.begin_s <= segment.begin_s + 1e-9;
+    RampState start = RampState::Zero();
+    // Over a cusp the lateral error goes on, mirrored in the direction of travel.
+    if (at_rest && window.segment > 0) {
+      start << direction * last_direction * state(0), state(1), 0.0;
+    }
+    start(2) = cells.front().path_curvature;
+    RampWeights weights;
+    weights.heading = config.heading_weight_m * config.heading_weight_m;
+    const double most = std::tan(vehicle.max_steering_rad()) / vehicle.wheelbase_m;
+    const std::vector<RampState>* ramp = nullptr;
+    for (int pass = 0; pass < kPasses; ++pass) {
+      bound_rates(window.segment, ramp);
+      ramp = &solver.solve(cells, start, at_rest, most, weights);
+    }
+    drive(window, direction, *ramp);
+  }
+};
+
+void SteeringPlan::build(const Reference& reference, const SpeedProfile& speeds,
+                         const Vehicle& vehicle, const SteeringPlanConfig& config) {
+  nodes_.clear();
+  windows_.clear();
+  if (reference.path.empty()) return;
+  Builder builder{*this, reference, speeds, vehicle, config, {}, {}, {}};
+  builder.add_windows();
+  double direction = 1.0;
+  int segment = 0;
+  for (Window& window : windows_) {
+    const auto& segments = reference.path.segments();
+    if (window.segment != segment) {
+      const auto before = static_cast<std::size_t>(window.segment - 1);
+      direction = sign(segments[before].gear);
+      // A segment whose last window ends before its cusp leaves nothing over.
+      const bool reaches = nodes_.empty() || nodes_.back().s >= segments[before].end_s - 1e-9;
+      if (!reaches) builder.state.setZero();
+      segment = window.segment;
+    }
+    builder.solve(window, direction);
+  }
+}
+
+PlannedSteering SteeringPlan::at(const Path& path, double s, int segment) const {
+  const PathSegment& stretch = path.segments()[static_cast<std::size_t>(segment)];
+  const double inside = std::clamp(s, stretch.begin_s, stretch.end_s);
+  const auto past = std::lower_bound(
+      windows_.begin(), windows_.end(), inside, [segment](const Window& window, double value) {
+        return window.segment < segment || (window.segment == segment && window.end_s < value);
+      });
+  if (past == windows_.end() || past->segment != segment || past->begin_s > inside) {
+    // The end of a segment is already the next piece for Path::at.
+    return {path.at(std::min(inside, stretch.end_s - 1e-6)).curvature, 0.0, 0.0};
+  }
+  const auto first = nodes_.begin() + static_cast<std::ptrdiff_t>(past->first);
+  const auto last = nodes_.begin() + static_cast<std::ptrdiff_t>(past->last);
+  const auto after = std::upper_bound(
+      first + 1, last, inside, [](double value, const Node& node) { return value < node.s; });
+  const Node& a = *(after - 1);
+  const Node& b = *after;
+  const double ratio = b.s > a.s ? std::clamp((inside - a.s) / (b.s - a.s), 0.0, 1.0) : 0.0;
+  const auto mix = [ratio](double from, double to) { return from + ratio * (to - from); };
+  return {mix(a.wanted.curvature, b.wanted.curvature), mix(a.wanted.lateral, b.wanted.lateral),
+          mix(a.wanted.heading, b.wanted.heading)};
+}
+
+}  // namespace headland
