@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -15,7 +14,6 @@
 #include "sim/lab/ebs221/tours.hpp"
 #include "sim/lab/metrics.hpp"
 #include "sim/lab/statistics.hpp"
-#include "sim/lab/trackers.hpp"
 
 namespace headland {
 namespace {
@@ -185,8 +183,8 @@ class Study {
     const FieldPath plan = path_of(part, shape);
     const Reference reference{plan.path, std::vector<double>(plan.kinds.size(), config_.speed_mps)};
     const Vehicle tractor = vehicle(part);
-    const std::unique_ptr<Tracker> tracker = make_tracker(tractor, {});
-    const FieldDrive drive = drive_our_field(*tracker, tractor, reference, config_.period_s);
+    PurePursuit tracker(tractor, config_.tracker);
+    const FieldDrive drive = drive_our_field(tracker, tractor, reference, config_.period_s);
     Measured m;
     m.drive = &drive;
     m.exact = tracking_metrics(drive.errors, two_kinds(plan.kinds));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "control/pure_pursuit/pure_pursuit.hpp"
 #include "core/base/result.hpp"
 #include "core/config/visit.hpp"
 #include "sim/lab/ebs221/field.hpp"
@@ -47,6 +48,7 @@ struct Ebs221StudyConfig {
   Ebs221Part part_d{{1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, 60.0, 60.0, 1.0, 0.8};
   Ebs221Part part_e{{1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, 60.0, 30.0, 4.0, 2.0};
   Ebs221Part part_f{{1, 6, 7, 5, 10, 4, 9, 3, 8, 2}, 30.0, 30.0, 1.0, 0.2};
+  PurePursuitConfig tracker;
 
   std::optional<Error> check() const;
 
@@ -69,6 +71,7 @@ struct Ebs221StudyConfig {
     v("part_d", part_d, "Row order and turns for its limit");
     v("part_e", part_e, "Part D's drive with less steering than it was planned for");
     v("part_f", part_f, "Row order and turns for its limit");
+    v("tracker", tracker, "Ours");
   }
 };
 
