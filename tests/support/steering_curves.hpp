@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <utility>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
-#include "core/base/random.hpp"
-#include "core/geometry/curve.hpp"
+#include "tests/support/curve_constructions.hpp"
 
-// What every steering curve must obey, and queries of which the answer is known.
+// What every steering curve must obey.
 namespace headland::test {
 
 inline constexpr double kEndTolerance = 1e-9;  // [m, rad]
-
-inline Pose2 random_pose(RandomStream& random, double half_side) {
-  return {random.uniform(-half_side, half_side), random.uniform(-half_side, half_side),
-          random.uniform(-kPi, kPi)};
-}
 
 /// The laws: it ends at `to`, it is no shorter than the chord, it bends no more than the radius
 /// allows.
@@ -47,37 +38,6 @@ inline ::testing::AssertionResult obeys_the_laws(const Curve& curve, const Pose2
 
 /// Mirror image in the x axis; a shortest curve mirrored is a shortest curve.
 inline Pose2 mirrored(const Pose2& pose) { return {pose.x, -pose.y, -pose.yaw}; }
-
-/// A curve of at most three forward pieces, half of them arcs of a special angle.
-inline Curve random_forward_construction(RandomStream& random, double radius) {
-  constexpr double kSpecial[] = {0.25 * kPi, 0.5 * kPi, kPi, 1.5 * kPi, 1.0};
-  Curve curve;
-  const int pieces = 1 + random.index(3);
-  for (int i = 0; i < pieces; ++i) {
-    const int turn = random.index(3) - 1;
-    const bool special = random.index(2) == 0;
-    const double angle = special ? kSpecial[random.index(5)] : random.uniform(0.0, 2.0 * kPi);
-    const double length = turn == 0 ? random.uniform(0.0, 10.0) : angle * radius;
-    curve.add({static_cast<double>(turn) / radius, length});
-  }
-  return curve;
-}
-
-/// A curve of at most five pieces in either gear, arcs of up to half a turn.
-inline Curve random_reversing_construction(RandomStream& random, double radius) {
-  constexpr double kSpecial[] = {0.25 * kPi, 0.5 * kPi, kPi, 1.0, kPi / 3.0};
-  Curve curve;
-  const int pieces = 1 + random.index(5);
-  for (int i = 0; i < pieces; ++i) {
-    const int turn = random.index(3) - 1;
-    const double gear = random.index(2) == 0 ? 1.0 : -1.0;
-    const bool special = random.index(2) == 0;
-    const double angle = special ? kSpecial[random.index(5)] : random.uniform(0.0, kPi);
-    const double length = turn == 0 ? random.uniform(0.0, 10.0) : angle * radius;
-    curve.add({static_cast<double>(turn) / radius, gear * length});
-  }
-  return curve;
-}
 
 /// Asks for the curve to the end of `count` constructed ones: it must obey the laws and be no
 /// longer than the construction, by either function.
