@@ -95,6 +95,24 @@ TEST(ReedsShepp, GoalsATrifleOffAWordsBorderAreReachedAllTheSame) {
     to.yaw += random.uniform(-off, off);
     const Curve found = shortest_reeds_shepp({}, to, 2.0);
     ASSERT_TRUE(test::obeys_the_laws(found, {}, to, 2.0)) << i << " off by " << off;
+    ASSERT_LE(found.cusps(), 2) << i << " off by " << off;
+  }
+}
+
+// A piece that is rounding alone would be a change of gear to whoever drives the curve.
+TEST(ReedsShepp, RoundingPutsNoCuspIntoAForwardCurve) {
+  RandomStream random(5, "reeds_shepp");
+  for (int i = 0; i < 20000; ++i) {
+    const Pose2 from = test::random_pose(random, 50.0);
+    const double first = random.uniform(0.0, 1.5);
+    const double last = random.uniform(0.0, 1.5);
+    Curve known;
+    known.add({random.index(2) == 0 ? 0.5 : -0.5, 2.0 * first * random.index(2)});
+    known.add({0.0, 6.0 + random.uniform(0.0, 10.0)});
+    known.add({random.index(2) == 0 ? 0.5 : -0.5, 2.0 * last * random.index(2)});
+    const Curve found = shortest_reeds_shepp(from, known.end_pose(from), 2.0);
+    if (found.length() < known.length() - 1e-9) continue;  // reversing is a true gain
+    for (const CurvePiece& piece : found) ASSERT_GT(piece.length, 0.0) << i << found.word();
   }
 }
 
