@@ -4,202 +4,314 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
-// Formula numbers: Reeds and Shepp 1990, section 8. In units of the radius; L, R and S with signed
-// lengths. Mirroring (y, phi -> -y, -phi), flipping time (x, phi -> -x, -phi) and driving backwards
-// through the word make 48 words of these nine.
+#include "core/geometry/internal/steering.hpp"
+
+// Reeds and Shepp 1990, section 8, formulas 8.1 to 8.11 in the notation of steering.hpp: t, u and v
+// are the first turn, the middle (turn or straight) and the last turn, signed, in radii.
+//
+// Mirroring (y, phi -> -y, -phi), flipping time (x, phi -> -x, -phi) and driving backwards through
+// the word make 48 words of these. Flipping time turns a link (a, b) into (-a, b), so what depends
+// on its length alone serves both gears. The turns of a word add up to the goal's heading, which
+// bounds its length from below; with this and the sign of the first turn's sine most words are
+// dismissed before an arc tangent is taken. The words of three pieces come first: they win most.
 namespace headland {
 namespace {
 
-constexpr double kEps = 1e-12;
+using internal::Link;
+using internal::UnitGoal;
 
-struct Word {
-  double turns[5] = {0, 0, 0, 0, 0};  // +1 left, 0 straight, -1 right
-  double lengths[5] = {0, 0, 0, 0, 0};
-  int count = 0;
-  double total = std::numeric_limits<double>::infinity();
+constexpr double kEps = 1e-12;  // [rad] by which a turn may have the wrong sign; see is_rounding
+constexpr double kQuarter = 0.5 * kPi;
+
+enum class Word {
+  kLsl,
+  kLsr,
+  kLrl,
+  kLrlBack,
+  kLrlrOpposite,
+  kLrlrSame,
+  kLrsl,
+  kLrsr,
+  kLrslBack,
+  kLrsrBack,
+  kLrslr
 };
 
-struct Params {
+// The pieces of each word, and where their lengths come from: t, u, v, n = -u, q = a quarter turn
+// in reverse. Words "back" are driven from the goal's end.
+struct Shape {
+  std::string_view turns;
+  std::string_view lengths;
+};
+constexpr Shape kShapes[] = {{"LSL", "tuv"},   {"LSR", "tuv"},    {"LRL", "tuv"},
+                             {"LRL", "vut"},   {"LRLR", "tunv"},  {"LRLR", "tuuv"},
+                             {"LRSL", "tquv"}, {"LRSR", "tquv"},  {"LSRL", "vuqt"},
+                             {"RSRL", "vuqt"}, {"LRSLR", "tquqv"}};
+
+// One of the four images of the problem.
+struct Image {
+  double flip = 1.0;    // -1: time flipped
+  double mirror = 1.0;  // -1: mirrored
+  double phi = 0.0;
+  double sin_phi = 0.0;
+  double cos_phi = 1.0;
+};
+
+struct Solution {
+  double length = std::numeric_limits<double>::infinity();
+  Word word = Word::kLsl;
+  double flip = 1.0;
+  double mirror = 1.0;
   double t = 0.0;
   double u = 0.0;
   double v = 0.0;
 };
 
-double wrap(double a) {
-  const double w = std::remainder(a, 2.0 * kPi);
-  return w;
+// An angle by a vector in its direction, for its sign and bounds to be known before it is.
+struct Direction {
+  double x = 1.0;
+  double y = 0.0;
+
+  double slack() const { return kEps * (std::abs(x) + std::abs(y)); }
+  /// May the angle lie in [0, pi]?
+  bool left() const { return y >= -slack(); }
+  /// May the angle less phi lie in [0, pi]; in [-pi, 0]?
+  bool left_of(const Image& i) const { return y * i.cos_phi - x * i.sin_phi >= -slack(); }
+  /// The same for the angle and a quarter turn, less phi.
+  bool quarter_left_of(const Image& i) const { return x * i.cos_phi + y * i.sin_phi >= -slack(); }
+  bool quarter_right_of(const Image& i) const { return x * i.cos_phi + y * i.sin_phi <= slack(); }
+  double angle() const {
+    const double a = std::atan2(y, x);
+    return a < kEps - kPi ? a + internal::kTwoPi : a;
+  }
+};
+
+/// Wraps an angle in [-4 pi, 4 pi] to (-pi, pi], with half a turn and a trifle more counted as
+/// left.
+double wrap(double angle) {
+  while (angle > kPi + kEps) angle -= internal::kTwoPi;
+  while (angle < kEps - kPi) angle += internal::kTwoPi;
+  return angle;
 }
 
 class Search {
  public:
-  Search(double x, double y, double phi) : x_(x), y_(y), phi_(phi) {}
+  explicit Search(const UnitGoal& goal)
+      : abs_phi_(std::abs(goal.phi)), quarter_rest_(std::abs(abs_phi_ - kQuarter)) {
+    const double s = goal.sin_phi;
+    const double c = goal.cos_phi;
+    // The goal's view of the start, for words driven backwards.
+    UnitGoal back = goal;
+    back.x = goal.x * c + goal.y * s;
+    back.y = goal.x * s - goal.y * c;
+    sides_[0] = {arm(internal::left_to_left(goal)), arm(internal::left_to_right(goal)),
+                 arm(internal::left_to_left(back)), arm(internal::left_to_right(back))};
+    sides_[1] = {
+        arm(internal::mirrored_right_to_right(goal)), arm(internal::mirrored_right_to_left(goal)),
+        arm(internal::mirrored_right_to_right(back)), arm(internal::mirrored_right_to_left(back))};
+    for (int k = 0; k < 4; ++k) {
+      const double flip = k % 2 == 0 ? 1.0 : -1.0;
+      const double mirror = k < 2 ? 1.0 : -1.0;
+      images_[k] = {flip, mirror, flip * mirror * goal.phi, flip * mirror * s, c};
+    }
+  }
 
-  Word best() {
-    for (const double flip : {1.0, -1.0}) {
-      for (const double mirror : {1.0, -1.0}) {
-        const double x = flip * x_;
-        const double y = mirror * y_;
-        const double phi = flip * mirror * phi_;
-        forward(x, y, phi, flip, mirror);
-        // Driven through backwards: the goal as seen from itself.
-        const double c = std::cos(phi);
-        const double s = std::sin(phi);
-        backward(x * c + y * s, x * s - y * c, phi, flip, mirror);
-      }
+  Solution shortest() {
+    for (int k = 0; k < 4; ++k) {
+      const Side& side = sides_[k / 2];
+      const Image& image = images_[k];
+      lsl(side.same, image);
+      lsr(side.other, image);
+    }
+    for (int k = 0; k < 4; ++k) {
+      const Side& side = sides_[k / 2];
+      const Image& image = images_[k];
+      lrl(side.same, image, Word::kLrl);
+      lrl(side.back_same, image, Word::kLrlBack);
+      lrsr(side.other, image, Word::kLrsr);
+      lrsr(side.back_other, image, Word::kLrsrBack);
+      lrsl(side.same, image, Word::kLrsl);
+      lrsl(side.back_same, image, Word::kLrslBack);
+      lrslr(side.other, image);
+      lrlr_same(side.other, image);
+      lrlr_opposite(side.other, image);
     }
     return best_;
   }
 
  private:
-  void offer(double flip, double mirror, std::initializer_list<double> turns,
-             std::initializer_list<double> lengths) {
-    double total = 0.0;
-    for (const double l : lengths) total += std::abs(l);
-    if (total >= best_.total - 1e-13) return;
-    best_.total = total;
-    best_.count = 0;
-    auto length = lengths.begin();
-    for (const double turn : turns) {
-      best_.turns[best_.count] = mirror * turn;
-      best_.lengths[best_.count++] = flip * *length++;
+  // A link between circles and what depends on its length.
+  struct Arm {
+    double a = 0.0;
+    double b = 0.0;
+    double rho = 0.0;
+    double tangent = -1.0;  // of the crossed tangent of the two circles; -1: they overlap
+  };
+  struct Side {
+    Arm same;
+    Arm other;
+    Arm back_same;
+    Arm back_other;
+  };
+
+  static Arm arm(const Link& w) {
+    const double excess = w.squared - 4.0;
+    return {w.u, w.v, std::sqrt(w.squared),
+            excess < -4.0 * kEps ? -1.0 : std::sqrt(std::max(0.0, excess))};
+  }
+
+  bool hopeless(double bound) const { return bound >= best_.length; }
+
+  void offer(const Image& i, Word word, double t, double u, double v, double length) {
+    if (length < best_.length) best_ = {length, word, i.flip, i.mirror, t, u, v};
+  }
+
+  // 8.1, L+S+L+: w = u e^(i t), t + v = phi.
+  void lsl(const Arm& w, const Image& i) {
+    if (hopeless(w.rho + abs_phi_)) return;
+    const Direction first = w.rho < kEps ? Direction{} : Direction{i.flip * w.a, w.b};
+    if (!first.left()) return;
+    const double t = first.angle();
+    const double v = wrap(i.phi - t);
+    if (t >= -kEps && v >= -kEps) offer(i, Word::kLsl, t, w.rho, v, t + w.rho + v);
+  }
+
+  // 8.2, L+S+R+: w = e^(i t) (u - 2 i), t - v = phi.
+  void lsr(const Arm& w, const Image& i) {
+    const double u = w.tangent;
+    if (u < 0.0 || hopeless(u + abs_phi_)) return;
+    const double a = i.flip * w.a;
+    const Direction first{a * u - 2.0 * w.b, 2.0 * a + w.b * u};
+    if (!first.left() || !first.left_of(i)) return;
+    const double t = first.angle();
+    const double v = wrap(t - i.phi);
+    if (t >= -kEps && v >= -kEps) offer(i, Word::kLsr, t, u, v, t + u + v);
+  }
+
+  // 8.3 and 8.4, L+R-L+ and L+R-L-: w = -4 sin(-u / 2) e^(i (t - u / 2)), t - u + v = phi.
+  void lrl(const Arm& w, const Image& i, Word word) {
+    if (w.rho > 4.0 + kEps || hopeless(std::max(0.5 * w.rho, abs_phi_))) return;
+    const double s = std::min(1.0, 0.25 * w.rho);
+    const double c = std::sqrt((1.0 - s) * (1.0 + s));
+    const double a = i.flip * w.a;
+    const Direction first{-a * c - w.b * s, a * s - w.b * c};
+    if (!first.left()) return;
+    const double u = -2.0 * std::atan2(s, c);
+    if (hopeless(-u + std::abs(wrap(i.phi + u)))) return;
+    const double t = first.angle();
+    const double v = wrap(i.phi - t + u);
+    if (t >= -kEps) offer(i, word, t, u, v, t - u + std::abs(v));
+  }
+
+  // 8.7, L+R+L-R-: |w| = 4 cos(u) - 2, t - 2 u - v = phi.
+  void lrlr_opposite(const Arm& w, const Image& i) {
+    if (w.rho > 2.0 + kEps) return;
+    const double c = std::min(1.0, 0.25 * (2.0 + w.rho));
+    const double s = std::sqrt((1.0 - c) * (1.0 + c));
+    if (hopeless(2.0 * s)) return;
+    const double a = i.flip * w.a;
+    const Direction first{-a * s - w.b * c, a * c - w.b * s};
+    if (!first.left()) return;
+    const double u = std::atan2(s, c);
+    const double t = first.angle();
+    const double v = -wrap(i.phi + 2.0 * u - t);
+    if (t >= -kEps && v <= kEps) {
+      offer(i, Word::kLrlrOpposite, t, u, v, t + 2.0 * u - v);
     }
   }
 
-  static bool csc_same(double x, double y, double phi, Params& p) {  // 8.1: L+S+L+
-    const double a = x - std::sin(phi);
-    const double b = y - 1.0 + std::cos(phi);
-    p.u = std::hypot(a, b);
-    p.t = p.u < kEps ? 0.0 : std::atan2(b, a);
-    p.v = wrap(phi - p.t);
-    return p.t >= -kEps && p.v >= -kEps;
-  }
-  static bool csc_other(double x, double y, double phi, Params& p) {  // 8.2: L+S+R+
-    const double a = x + std::sin(phi);
-    const double b = y - 1.0 - std::cos(phi);
-    const double squared = a * a + b * b;
-    if (squared < 4.0 - kEps) return false;
-    p.u = std::sqrt(std::max(0.0, squared - 4.0));
-    p.t = wrap(std::atan2(b, a) + std::atan2(2.0, p.u));
-    p.v = wrap(p.t - phi);
-    return p.t >= -kEps && p.v >= -kEps;
-  }
-  static bool ccc(double x, double y, double phi, Params& p) {  // 8.3: L+R-L
-    const double a = x - std::sin(phi);
-    const double b = y - 1.0 + std::cos(phi);
-    const double rho = std::hypot(a, b);
-    if (rho > 4.0 + kEps) return false;
-    p.u = -2.0 * std::asin(std::min(1.0, 0.25 * rho));
-    p.t = wrap(std::atan2(b, a) + 0.5 * p.u + kPi);
-    p.v = wrap(phi - p.t + p.u);
-    return p.t >= -kEps && p.u <= kEps;
-  }
-  static void outer(double u, double v, double a, double b, double phi, double& tau, double& omega) {
-    const double delta = wrap(u - v);
-    const double A = std::sin(u) - std::sin(delta);
-    const double B = std::cos(u) - std::cos(delta) - 1.0;
-    const double t1 = std::atan2(b * A - a * B, a * A + b * B);
-    const double t2 = 2.0 * (std::cos(delta) - std::cos(v) - std::cos(u)) + 3.0;
-    tau = t2 < 0.0 ? wrap(t1 + kPi) : wrap(t1);
-    omega = wrap(tau - u + v - phi);
-  }
-  static bool cccc_opposite(double x, double y, double phi, Params& p) {  // 8.7: L+R+L-R-
-    const double a = x + std::sin(phi);
-    const double b = y - 1.0 - std::cos(phi);
-    const double rho = 0.25 * (2.0 + std::hypot(a, b));
-    if (rho > 1.0 + kEps) return false;
-    p.u = std::acos(std::min(1.0, rho));
-    outer(p.u, -p.u, a, b, phi, p.t, p.v);
-    return p.t >= -kEps && p.v <= kEps;
-  }
-  static bool cccc_same(double x, double y, double phi, Params& p) {  // 8.8: L+R-L-R+
-    const double a = x + std::sin(phi);
-    const double b = y - 1.0 - std::cos(phi);
-    const double rho = (20.0 - a * a - b * b) / 16.0;
-    if (rho < -kEps || rho > 1.0 + kEps) return false;
-    p.u = -std::acos(std::clamp(rho, 0.0, 1.0));
-    outer(p.u, p.u, a, b, phi, p.t, p.v);
-    return p.t >= -kEps && p.v >= -kEps;
-  }
-  static bool ccsc_same(double x, double y, double phi, Params& p) {  // 8.9: L+R-S-L-
-    const double a = x - std::sin(phi);
-    const double b = y - 1.0 + std::cos(phi);
-    const double rho = std::hypot(a, b);
-    if (rho < 2.0 - kEps) return false;
-    const double r = std::sqrt(std::max(0.0, rho * rho - 4.0));
-    p.u = 2.0 - r;
-    p.t = wrap(std::atan2(b, a) + std::atan2(r, -2.0));
-    p.v = wrap(phi - 0.5 * kPi - p.t);
-    return p.t >= -kEps && p.u <= kEps && p.v <= kEps;
-  }
-  static bool ccsc_other(double x, double y, double phi, Params& p) {  // 8.10: L+R-S-R-
-    const double a = x + std::sin(phi);
-    const double b = y - 1.0 - std::cos(phi);
-    const double rho = std::hypot(a, b);
-    if (rho < 2.0 - kEps) return false;
-    p.t = std::atan2(a, -b);
-    p.u = 2.0 - rho;
-    p.v = wrap(p.t + 0.5 * kPi - phi);
-    return p.t >= -kEps && p.u <= kEps && p.v <= kEps;
-  }
-  static bool ccscc(double x, double y, double phi, Params& p) {  // 8.11: L+R-S-L-R+
-    const double a = x + std::sin(phi);
-    const double b = y - 1.0 - std::cos(phi);
-    const double rho = std::hypot(a, b);
-    if (rho < 2.0 - kEps) return false;
-    p.u = 4.0 - std::sqrt(std::max(0.0, rho * rho - 4.0));
-    if (p.u > kEps) return false;
-    p.t = wrap(std::atan2((4.0 - p.u) * a - 2.0 * b, -2.0 * a + (p.u - 4.0) * b));
-    p.v = wrap(p.t - phi);
-    return p.t >= -kEps && p.v >= -kEps;
+  // 8.8, L+R-L-R+: |w|^2 = 20 - 16 cos(u), t - v = phi.
+  void lrlr_same(const Arm& w, const Image& i) {
+    const double c = (20.0 - w.rho * w.rho) / 16.0;
+    if (c < -kEps || c > 1.0 + kEps) return;
+    const double s = -std::sqrt(std::max(0.0, (1.0 - c) * (1.0 + c)));
+    if (hopeless(abs_phi_ - 2.0 * s)) return;
+    const double a = i.flip * w.a;
+    const Direction first{a * s + w.b * (c - 2.0), w.b * s - a * (c - 2.0)};
+    if (!first.left() || !first.left_of(i)) return;
+    const double u = std::atan2(s, c);
+    const double t = first.angle();
+    const double v = wrap(t - i.phi);
+    if (t >= -kEps && v >= -kEps) offer(i, Word::kLrlrSame, t, u, v, t - 2.0 * u + v);
   }
 
-  void forward(double x, double y, double phi, double flip, double mirror) {
-    constexpr double kQuarter = 0.5 * kPi;
-    Params p;
-    if (csc_same(x, y, phi, p)) offer(flip, mirror, {1, 0, 1}, {p.t, p.u, p.v});
-    if (csc_other(x, y, phi, p)) offer(flip, mirror, {1, 0, -1}, {p.t, p.u, p.v});
-    if (ccc(x, y, phi, p)) offer(flip, mirror, {1, -1, 1}, {p.t, p.u, p.v});
-    if (cccc_opposite(x, y, phi, p)) offer(flip, mirror, {1, -1, 1, -1}, {p.t, p.u, -p.u, p.v});
-    if (cccc_same(x, y, phi, p)) offer(flip, mirror, {1, -1, 1, -1}, {p.t, p.u, p.u, p.v});
-    if (ccsc_same(x, y, phi, p)) offer(flip, mirror, {1, -1, 0, 1}, {p.t, -kQuarter, p.u, p.v});
-    if (ccsc_other(x, y, phi, p)) offer(flip, mirror, {1, -1, 0, -1}, {p.t, -kQuarter, p.u, p.v});
-    if (ccscc(x, y, phi, p)) {
-      offer(flip, mirror, {1, -1, 0, 1, -1}, {p.t, -kQuarter, p.u, -kQuarter, p.v});
-    }
-  }
-  void backward(double x, double y, double phi, double flip, double mirror) {
-    constexpr double kQuarter = 0.5 * kPi;
-    Params p;
-    if (ccc(x, y, phi, p)) offer(flip, mirror, {1, -1, 1}, {p.v, p.u, p.t});
-    if (ccsc_same(x, y, phi, p)) offer(flip, mirror, {1, 0, -1, 1}, {p.v, p.u, -kQuarter, p.t});
-    if (ccsc_other(x, y, phi, p)) offer(flip, mirror, {-1, 0, -1, 1}, {p.v, p.u, -kQuarter, p.t});
+  // 8.9, L+R-S-L-: w = e^(i t) (-2 - i (2 - u)), t + pi / 2 + v = phi.
+  void lrsl(const Arm& w, const Image& i, Word word) {
+    const double u = 2.0 - w.tangent;
+    if (u > kEps || hopeless(kQuarter - u + quarter_rest_)) return;
+    const double a = i.flip * w.a;
+    const Direction first{-2.0 * a - w.b * w.tangent, a * w.tangent - 2.0 * w.b};
+    if (!first.left() || !first.quarter_left_of(i)) return;
+    const double t = first.angle();
+    const double v = -wrap(t + kQuarter - i.phi);
+    if (t >= -kEps && v <= kEps) offer(i, word, t, u, v, t + kQuarter - u - v);
   }
 
-  double x_;
-  double y_;
-  double phi_;
-  Word best_;
+  // 8.10, L+R-S-R-: w = i e^(i t) (2 - u), t + pi / 2 - v = phi.
+  void lrsr(const Arm& w, const Image& i, Word word) {
+    const double u = 2.0 - w.rho;
+    if (u > kEps || hopeless(kQuarter - u + quarter_rest_)) return;
+    const Direction first{-w.b, i.flip * w.a};
+    if (!first.left() || !first.quarter_right_of(i)) return;
+    const double t = first.angle();
+    const double v = -wrap(i.phi - kQuarter - t);
+    if (t >= -kEps && v <= kEps) offer(i, word, t, u, v, t + kQuarter - u - v);
+  }
+
+  // 8.11, L+R-S-L-R+: w = e^(i t) (-2 - i (4 - u)), t - v = phi.
+  void lrslr(const Arm& w, const Image& i) {
+    const double u = 4.0 - w.tangent;
+    if (u > kEps || hopeless(kPi - u + abs_phi_)) return;
+    const double a = i.flip * w.a;
+    const Direction first{-2.0 * a - w.b * w.tangent, a * w.tangent - 2.0 * w.b};
+    if (!first.left() || !first.left_of(i)) return;
+    const double t = first.angle();
+    const double v = wrap(t - i.phi);
+    if (t >= -kEps && v >= -kEps) offer(i, Word::kLrslr, t, u, v, t + kPi - u + v);
+  }
+
+  double abs_phi_;       // bounds |t| + |v| of words whose other turns cancel
+  double quarter_rest_;  // bounds it in words with one quarter turn
+  Side sides_[2];        // the problem and its mirror image
+  Image images_[4];
+  Solution best_;
 };
 
-Word solve(const Pose2& from, const Pose2& to, double radius) {
-  const Pose2 goal = inverse(from) * to;
-  return Search(goal.x / radius, goal.y / radius, wrap_angle(goal.yaw)).best();
+// A piece [radii] that is nothing but rounding must not put a cusp into the curve; it is dropped
+// where that moves the end by far less than an answer may miss the goal.
+bool is_rounding(double length, const Solution& found, const UnitGoal& goal) {
+  return std::abs(length) <= kEps &&
+         std::abs(length) * (found.length + 2.0) <= 0.1 * goal.tolerance;
+}
+
+Curve build(const UnitGoal& goal, const Solution& found, double radius) {
+  const Shape& shape = kShapes[static_cast<std::size_t>(found.word)];
+  Curve curve;
+  for (std::size_t k = 0; k < shape.turns.size(); ++k) {
+    const double side = shape.turns[k] == 'L' ? 1.0 : shape.turns[k] == 'R' ? -1.0 : 0.0;
+    const char from = shape.lengths[k];
+    const double length = from == 't'   ? found.t
+                          : from == 'u' ? found.u
+                          : from == 'v' ? found.v
+                          : from == 'n' ? -found.u
+                                        : -kQuarter;
+    if (is_rounding(length, found, goal)) continue;
+    curve.add({side * found.mirror / radius, found.flip * length * radius});
+  }
+  return curve;
 }
 
 }  // namespace
 
 Curve shortest_reeds_shepp(const Pose2& from, const Pose2& to, double radius) {
-  const Word word = solve(from, to, radius);
-  Curve curve;
-  for (int i = 0; i < word.count; ++i) {
-    curve.add({word.turns[i] / radius, word.lengths[i] * radius});
-  }
-  return curve;
+  const UnitGoal goal = internal::unit_goal(from, to, radius);
+  return build(goal, Search(goal).shortest(), radius);
 }
 
 double reeds_shepp_length(const Pose2& from, const Pose2& to, double radius) {
-  return solve(from, to, radius).total * radius;
+  return Search(internal::unit_goal(from, to, radius)).shortest().length * radius;
 }
 
 }  // namespace headland

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/curve_constructions.hpp"
+
+// What every steering curve must obey.
+namespace headland::test {
+
+inline constexpr double kEndTolerance = 1e-9;  // [m, rad]
+
+/// The laws: it ends at `to`, it is no shorter than the chord, it bends no more than the radius
+/// allows.
+inline ::testing::AssertionResult obeys_the_laws(const Curve& curve, const Pose2& from,
+                                                 const Pose2& to, double radius) {
+  const EndError error = end_error(curve, from, to);
+  // Written so that a NaN fails.
+  if (!(error.position <= kEndTolerance && error.yaw <= kEndTolerance)) {
+    return ::testing::AssertionFailure() << curve.word() << " misses its end by " << error.position
+                                         << " m and " << error.yaw << " rad";
+  }
+  const double chord = (to.position() - from.position()).norm();
+  if (!(curve.length() >= chord - kEndTolerance)) {
+    return ::testing::AssertionFailure()
+           << curve.word() << " of " << curve.length() << " m is shorter than the chord " << chord;
+  }
+  for (const CurvePiece& piece : curve) {
+    if (!(std::abs(piece.curvature) * radius <= 1.0 + 1e-15)) {
+      return ::testing::AssertionFailure() << curve.word() << " bends by " << piece.curvature;
+    }
+  }
+  return ::testing::AssertionSuccess();
+}
+
+/// Mirror image in the x axis; a shortest curve mirrored is a shortest curve.
+inline Pose2 mirrored(const Pose2& pose) { return {pose.x, -pose.y, -pose.yaw}; }
+
+/// Asks for the curve to the end of `count` constructed ones: it must obey the laws and be no
+/// longer than the construction, by either function.
+template <typename Construct, typename Solve, typename Length>
+void expect_never_longer_than_constructions(int count, std::string_view name, Construct construct,
+                                            Solve solve, Length length) {
+  RandomStream random(20261122, name);
+  int failures = 0;
+  for (int i = 0; i < count && failures < 5; ++i) {
+    const double radius = random.uniform(0.5, 6.0);
+    const Pose2 from = random_pose(random, 50.0);
+    const Curve known = construct(random, radius);
+    Pose2 to = known.end_pose(from);
+    to.yaw = wrap_angle(to.yaw);
+    const Curve found = solve(from, to, radius);
+    const ::testing::AssertionResult legal = obeys_the_laws(found, from, to, radius);
+    const bool short_enough = found.length() <= known.length() + kEndTolerance;
+    const bool agree = std::abs(length(from, to, radius) - found.length()) <= kEndTolerance;
+    if (legal && short_enough && agree) continue;
+    ++failures;
+    ADD_FAILURE() << "query " << i << ": " << legal.message() << "; built " << known.word() << " "
+                  << known.length() << " m, found " << found.word() << " " << found.length()
+                  << " m, length alone " << length(from, to, radius) << " m";
+  }
+}
+
+}  // namespace headland::test
