@@ -14,7 +14,7 @@ namespace headland::coverage {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDetour = 1.03;          // an edge this little shorter than two others is left out
+constexpr double kDetour = 1.05;          // an edge this little shorter than two others is left out
 constexpr double kLongest = 1.5;          // curve to distance; beyond, the edge is no lane
 constexpr std::size_t kConnections = 10;  // of a port at most
 constexpr double kConnectionStep = 1.0;   // [m] of its leads

@@ -185,6 +185,10 @@ std::optional<Turn> TurnSearch::find(const TurnEnd& from, const TurnEnd& to, Tur
                                      CostRate rate) const {
   const std::vector<Leads> firsts = first_leads(from, to, space_.outline());
   std::vector<Candidate> heap;
+  const Point2 apart = to.out.position() - from.out.position();
+  const Point2 heading_out = from.out.heading();
+  const Point2 heading_in = to.out.heading();
+  const double turning = radius_ * std::abs(wrap_angle(to.out.yaw + kPi - from.out.yaw));
   // Growing both leads by a step never lowers the bound: it lengthens them by as much as it can
   // bring their ends together. So a line's next candidate may wait until this one has come up.
   const auto push = [&](int line, int steps, Kind kind) {
@@ -193,10 +197,7 @@ std::optional<Turn> TurnSearch::find(const TurnEnd& from, const TurnEnd& to, Tur
     if (steps > 0 && first.out + grown > from.free_run && first.in + grown > to.free_run) return;
     const double out = std::min(first.out + grown, from.free_run);
     const double in = std::min(first.in + grown, to.free_run);
-    const Pose2 a = forward(from.out, out);
-    const Pose2 b = reversed(forward(to.out, in));
-    const double least = std::max((b.position() - a.position()).norm(),
-                                  radius_ * std::abs(wrap_angle(b.yaw - a.yaw)));
+    const double least = std::max((apart + in * heading_in - out * heading_out).norm(), turning);
     heap.push_back({rate.of(out + least + in, cusps_at_least(kind)), line, steps, kind, false,
                     Turn{out, in, {}}});
     std::push_heap(heap.begin(), heap.end(), costs_more);

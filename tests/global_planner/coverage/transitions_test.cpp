@@ -270,6 +270,44 @@ TEST(Transitions, StopsAreLeftAndEnteredInTheirHeading) {
   }
 }
 
+TEST(Transitions, StopsWithoutAnyRowAreJoinedToo) {
+  Farm farm;
+  farm.free_parcels.push_back({"yard", {{{0.0, 0.0}, {60.0, 0.0}, {60.0, 40.0}, {0.0, 40.0}}, {}}});
+  farm.keep_outs.push_back({"barn", {{{25.0, 0.0}, {35.0, 0.0}, {35.0, 25.0}, {25.0, 25.0}}, {}}});
+  const Pose2 west{10.0, 10.0, 1.0};
+  const Pose2 east{50.0, 8.0, 0.0};
+  const Result<Transitions> ways =
+      Transitions::build(farm, {}, {{west, west, "west"}, {east, east, "east"}}, tractor());
+  ASSERT_TRUE(ways.has_value());
+  OutlineChecker checker(farm, {}, 0.0, tractor().footprint);
+  for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 0)}) {
+    EXPECT_GT(ways->cost(from, to).length_m, 55.0);  // around the barn
+    EXPECT_LT(ways->cost(from, to).length_m, 120.0);
+    EXPECT_EQ(checker.complaint(ways->path(from, to), {}), "");
+  }
+}
+
+TEST(Transitions, RowsThatBendAreLeftAlongTheirEnds) {
+  Farm farm = make_field({6, 40.0, 3.0, 14.0, 14.0, 0.0});
+  for (Row& row : farm.row_parcels[0].rows) {
+    const double x = row.line[0].x();
+    row.line = {{x, 0.0}, {x, 20.0}, {x + 5.0, 40.0}};
+  }
+  for (const Vehicle& vehicle : {tractor(), tracked_robot()}) {
+    const Transitions ways = built(farm, {}, vehicle);
+    expect_all_row_ends_joined(ways, 6);
+    for (int i = 1; i < 12; i += 2) {
+      EXPECT_NEAR(ways.site(i).depart.yaw, std::atan2(20.0, 5.0), 1e-9);
+      for (int j = 1; j < 12; j += 2) {
+        if (i == j) continue;
+        const Path path = ways.path(i, j);
+        EXPECT_NEAR((path.end_pose().position() - ways.site(j).arrive.position()).norm(), 0.0,
+                    1e-6);
+      }
+    }
+  }
+}
+
 TEST(Transitions, AWayIsNeverShorterThanTheStraightLine) {
   const Farm farm = make_field({8, 40.0, 2.5, 12.0, 8.0, 0.0});
   const Transitions ways = built(farm, {}, tractor());
