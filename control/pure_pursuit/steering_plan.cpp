@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSlowest = 0.1;         // speed that a plan counts with at least [m/s]
 constexpr double kSameCurvature = 1e-6;  // [1/m]
-constexpr int kPasses = 4;               // of the solver, each linearised around the last
+constexpr int kPasses = 6;               // of the solver, each linearised around the last
 
 }  // namespace
 

@@ -72,6 +72,13 @@ TEST(PurePursuitBars, SlowSteeringKeepsToThePathToo) {
   }
 }
 
+TEST(PurePursuitBars, SteeringFarTooSlowForTheTurnsStillFindsBackToThePath) {
+  const Drive d = report("D", study_vehicle(60.0, 0.3), route_d());
+  EXPECT_EQ(d.last, TrackStatus::kDone);
+  EXPECT_LT(d.all.most, 1.0);
+  EXPECT_LT(d.end_distance, 0.02);
+}
+
 // Rows 2.5 m apart with the tractor's own turns and speeds.
 Reference tractor_route(const Vehicle& vehicle, bool reverse) {
   Reference reference;
