@@ -25,7 +25,7 @@ std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle&
       const double change = std::abs(piece.curvature - before->curvature);
       const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
                                    std::atan(vehicle.wheelbase_m * before->curvature));
-      const double seconds = turn / (config.rate_share * vehicle.steering_rate_radps);
+      const double seconds = turn / (config.rate_use_ratio * vehicle.steering_rate_radps);
       const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
       const double wanted = leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
       if (change > kSameCurvature && wanted > 0.0) {
@@ -130,7 +130,7 @@ struct SteeringPlan::Builder {
     const double wheelbase = vehicle.wheelbase_m;
     const double slope = (1.0 + wheelbase * wheelbase * kappa * kappa) / wheelbase;
     cells[i].rate_bound =
-        config.rate_share * vehicle.steering_rate_radps / cell_speed(segment, i) * slope;
+        config.rate_use_ratio * vehicle.steering_rate_radps / cell_speed(segment, i) * slope;
   }
 
   // Brings the solver's linear model to the exact one, around the ramp it found last.
@@ -205,7 +205,7 @@ struct SteeringPlan::Builder {
     const std::vector<RampState>* ramp = nullptr;
     for (int pass = 0; pass < kPasses; ++pass) {
       if (ramp != nullptr) relinearise(window.segment, *ramp);
-      ramp = &solver.solve(cells, start, at_rest, most, weights);
+      ramp = &solver.solve(cells, start, at_rest, most, weights, pass > 0);
     }
     drive(window, direction, *ramp);
   }

@@ -40,7 +40,9 @@ TEST(BoundedRamp, KeepsItsBoundsAndBeatsTheEvenRamp) {
     cells[i].rate_bound = 0.5;
   }
   BoundedRamp solver;
-  const auto& ramp = solver.solve(cells, RampState::Zero(), false, 0.6, RampWeights{});
+  RampWeights weights;
+  weights.iterations = 150;
+  const auto& ramp = solver.solve(cells, RampState::Zero(), false, 0.6, weights);
   double square = 0.0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     EXPECT_LT(std::abs(ramp[i + 1](2) - ramp[i](2)), 0.04 * 0.5 * 1.1) << i;
@@ -107,7 +109,7 @@ TEST(SteeringZones, SlowDownOnlyWhereTheSteeringIsTooSlowForTheError) {
   // c l^2 / 24 over the zone is the error asked for, and the wheels just make it.
   const double length = zones[0].end_s - zones[0].begin_s;
   EXPECT_NEAR(0.4 * length * length / 24.0, 0.005, 1e-9);
-  EXPECT_NEAR(length / zones[0].speed, std::atan(2.5 * 0.4) / (0.5 * config.rate_share), 1e-9);
+  EXPECT_NEAR(length / zones[0].speed, std::atan(2.5 * 0.4) / (0.5 * config.rate_use_ratio), 1e-9);
   EXPECT_NEAR(0.5 * (zones[0].begin_s + zones[0].end_s), 10.0, 1e-9);
 }
 
