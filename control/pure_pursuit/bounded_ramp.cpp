@@ -4,11 +4,16 @@
 #include <algorithm>
 
 namespace headland {
+namespace {
+
+// The ramp ends on the path: weights of lateral [], heading [m^2] and curvature [m^4] there.
+const Eigen::Vector3d kEndWeights{10.0, 10.0, 1.0};
+
+}  // namespace
 
 // One cell of length h, exact for the piecewise linear model.
 void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeights& weights) {
-  stages_.assign(cells.size(), {});
-  Eigen::Matrix3d cost = Eigen::Vector3d(1.0, weights.heading, 0.0).asDiagonal();
+  Eigen::Matrix3d cost = kEndWeights.asDiagonal();
   for (std::size_t i = cells.size(); i-- > 0;) {
     const double h = cells[i].length;
     const double bend = cells[i].path_curvature;
@@ -17,7 +22,6 @@ void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeight
     stage.input << h * h * h / 6.0, 0.5 * h * h, h;
     stage.offset << -0.5 * h * h * bend, -h * bend, 0.0;
     stage.offset += cells[i].correction;
-    stage.kappa_z = bend;
     // The curvature at the cell's end keeps to its bound through the penalty.
     cost(2, 2) += h * weights.penalty;
     const Eigen::RowVector3d seen = stage.input.transpose() * cost;
@@ -36,7 +40,7 @@ void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeight
 // The linear part of the cost to go, from the last border to the first.
 Eigen::Vector3d BoundedRamp::sweep_back(const std::vector<RampCell>& cells,
                                         const RampWeights& weights) {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear(0.0, 0.0, -kEndWeights(2) * cells.back().path_curvature);
   for (std::size_t i = cells.size(); i-- > 0;) {
     Stage& stage = stages_[i];
     const double pull = cells[i].length * weights.penalty;
@@ -65,10 +69,14 @@ void BoundedRamp::roll_out(const RampState& start, bool free_start, const Eigen:
 
 const std::vector<RampState>& BoundedRamp::solve(const std::vector<RampCell>& cells,
                                                  const RampState& start, bool free_start,
-                                                 double curvature_bound,
-                                                 const RampWeights& weights) {
+                                                 double curvature_bound, const RampWeights& weights,
+                                                 bool again) {
   constexpr double kRelaxation = 1.6;
   states_.assign(cells.size() + 1, start);
+  if (!again) {
+    stages_.assign(cells.size(), {});
+    for (std::size_t i = 0; i < cells.size(); ++i) stages_[i].kappa_z = cells[i].path_curvature;
+  }
   factorise(cells, weights);
   for (int iteration = 0; iteration < weights.iterations; ++iteration) {
     roll_out(start, free_start, sweep_back(cells, weights), curvature_bound);

@@ -21,7 +21,7 @@ struct RampWeights {
   double heading = 0.02;  ///< of the squared heading error against the lateral one [m^2]
   double rate = 1e-6;     ///< of the squared change of curvature [m^6]
   double penalty = 3e-4;  ///< of breaking a bound, in the iteration [m^6]
-  int iterations = 150;
+  int iterations = 50;
 };
 
 /// Deviation from the path (lateral [m], heading [rad]) and the vehicle's curvature [1/m].
@@ -35,10 +35,11 @@ using RampState = Eigen::Vector3d;
 class BoundedRamp {
  public:
   /// States at the cells' borders (one more than cells). With `free_start` the first curvature may
-  /// be chosen (the wheels turn at a standstill), else start(2) counts.
+  /// be chosen (the wheels turn at a standstill), else start(2) counts. With `again` the cells are
+  /// those of the last call, a little changed, and the iteration goes on where it was.
   const std::vector<RampState>& solve(const std::vector<RampCell>& cells, const RampState& start,
                                       bool free_start, double curvature_bound,
-                                      const RampWeights& weights);
+                                      const RampWeights& weights, bool again = false);
 
  private:
   // What one cell contributes to the Riccati sweep; all but `k` fixed over the iterations.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSlowest = 0.1;         // speed that a plan counts with at least [m/s]
 constexpr double kSameCurvature = 1e-6;  // [1/m]
-constexpr int kPasses = 4;               // of the solver, each linearised around the last
+constexpr int kPasses = 6;               // of the solver, each linearised around the last
 
 }  // namespace
 
@@ -25,7 +25,7 @@ std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle&
       const double change = std::abs(piece.curvature - before->curvature);
       const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
                                    std::atan(vehicle.wheelbase_m * before->curvature));
-      const double seconds = turn / (config.rate_share * vehicle.steering_rate_radps);
+      const double seconds = turn / (config.rate_use_ratio * vehicle.steering_rate_radps);
       const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
       const double wanted = leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
       if (change > kSameCurvature && wanted > 0.0) {
@@ -65,10 +65,11 @@ struct SteeringPlan::Builder {
     return std::max(kSlowest, std::min(from_rest, speeds.limit(s, segment, 0.0)));
   }
 
-  // The distance that the steering needs for a step of the path's curvature at s [m].
+  // The distance planned on both sides of a step of the path's curvature at s [m]: the steering may
+  // turn too far first, and back.
   double reach(int segment, double s, double from, double to) const {
     const double seconds = std::abs(steering(to) - steering(from)) / vehicle.steering_rate_radps;
-    return config.margin_m + speed(segment, s) * seconds;
+    return config.margin_m + 2.0 * speed(segment, s) * seconds;
   }
 
   void add_windows() {
@@ -129,7 +130,7 @@ struct SteeringPlan::Builder {
     const double wheelbase = vehicle.wheelbase_m;
     const double slope = (1.0 + wheelbase * wheelbase * kappa * kappa) / wheelbase;
     cells[i].rate_bound =
-        config.rate_share * vehicle.steering_rate_radps / cell_speed(segment, i) * slope;
+        config.rate_use_ratio * vehicle.steering_rate_radps / cell_speed(segment, i) * slope;
   }
 
   // Brings the solver's linear model to the exact one, around the ramp it found last.
@@ -204,7 +205,7 @@ struct SteeringPlan::Builder {
     const std::vector<RampState>* ramp = nullptr;
     for (int pass = 0; pass < kPasses; ++pass) {
       if (ramp != nullptr) relinearise(window.segment, *ramp);
-      ramp = &solver.solve(cells, start, at_rest, most, weights);
+      ramp = &solver.solve(cells, start, at_rest, most, weights, pass > 0);
     }
     drive(window, direction, *ramp);
   }

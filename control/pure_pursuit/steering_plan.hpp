@@ -13,7 +13,7 @@ namespace headland {
 
 struct SteeringPlanConfig {
   /// Share of the actuator's rate that the plan uses; feedback has the rest.
-  double rate_share = 0.95;
+  double rate_use_ratio = 0.95;
   /// The plan's resolution [m].
   double step_m = 0.04;
   /// The path within this distance of a step of its curvature is planned, beside what the steering
@@ -29,7 +29,7 @@ struct SteeringPlanConfig {
 
   template <class V>
   void visit(V& v) {
-    v("rate_share", rate_share, config::Range{0.2, 1.0},
+    v("rate_use_ratio", rate_use_ratio, config::Range{0.2, 1.0},
       "Share of the steering rate that the feed-forward uses");
     v("step_m", step_m, config::Range{0.005, 0.5}, "Resolution of the steering plan [m]");
     v("margin_m", margin_m, config::Range{0.1, 20.0},

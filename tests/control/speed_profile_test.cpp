@@ -68,6 +68,22 @@ TEST(SpeedProfile, BrakesAheadOverLegsTooShortToBrakeIn) {
   }
 }
 
+TEST(SpeedProfile, KeepsToTheSlowestOfOverlappingZonesAndBrakesInTimeForThem) {
+  Reference reference;
+  reference.path.append_straight({0.0, 0.0, 0.0}, 30.0, 0);
+  reference.leg_speed = {2.0};
+  const std::vector<SpeedZone> zones = {{10.0, 14.0, 0.8}, {11.0, 12.0, 0.5}, {13.0, 16.0, 1.0}};
+  SpeedProfile profile;
+  profile.build(reference, kDeceleration, zones);
+  EXPECT_DOUBLE_EQ(profile.limit(2.0, 0, 0.0), 2.0);
+  EXPECT_NEAR(profile.limit(9.0, 0, 0.0), std::sqrt(0.8 * 0.8 + 2.0 * kDeceleration), 1e-12);
+  EXPECT_DOUBLE_EQ(profile.limit(11.5, 0, 0.0), 0.5);
+  EXPECT_DOUBLE_EQ(profile.limit(12.5, 0, 0.0), 0.8);
+  EXPECT_DOUBLE_EQ(profile.limit(13.5, 0, 0.0), 0.8);
+  EXPECT_DOUBLE_EQ(profile.limit(15.0, 0, 0.0), 1.0);
+  EXPECT_DOUBLE_EQ(profile.limit(16.5, 0, 0.0), 2.0);
+}
+
 TEST(SpeedProfile, StandsStillOnALegWithoutASpeed) {
   Reference reference;
   reference.path.append_straight({0.0, 0.0, 0.0}, 1.0, 0);
