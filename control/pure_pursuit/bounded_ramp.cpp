@@ -16,6 +16,7 @@ void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeight
     stage.transition << 1.0, h, 0.5 * h * h, 0.0, 1.0, h, 0.0, 0.0, 1.0;
     stage.input << h * h * h / 6.0, 0.5 * h * h, h;
     stage.offset << -0.5 * h * h * bend, -h * bend, 0.0;
+    stage.offset += cells[i].correction;
     stage.kappa_z = bend;
     // The curvature at the cell's end keeps to its bound through the penalty.
     cost(2, 2) += h * weights.penalty;

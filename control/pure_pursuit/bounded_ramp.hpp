@@ -12,6 +12,8 @@ struct RampCell {
   double length = 0.0;          ///< [m]
   double path_curvature = 0.0;  ///< [1/m] in the direction of travel
   double rate_bound = 0.0;      ///< change of curvature per metre driven [1/m^2]
+  /// What the linear model below lacks over the cell.
+  Eigen::Vector3d correction = Eigen::Vector3d::Zero();
 };
 
 /// Weights of a ramp's cost, per metre driven.

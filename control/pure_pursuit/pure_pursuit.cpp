@@ -152,7 +152,9 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
   const double s = nearest.s + ahead;
   const double driven = std::tan(measured.steering) / vehicle_.wheelbase_m;
   const Pose2 then = advance(pose, driven, direction * ahead);
-  const double lookahead = config_.lookahead_m + config_.lookahead_time_s * v;
+  const double seconds = config_.lookahead_time_s +
+                         deg_to_rad(config_.lookahead_turn_deg) / vehicle_.steering_rate_radps;
+  const double lookahead = config_.lookahead_m + seconds * v;
   const Point2 target = planned_pose(s + lookahead).position();
   const double feedback = pursuit(then, target) - pursuit(planned_pose(s), target);
   const double curvature = plan_.at(path, inside(s), segment_).curvature + feedback;

@@ -11,9 +11,11 @@
 namespace headland {
 
 struct PurePursuitConfig {
-  /// Lookahead along the path: this much [m] plus this time's travel [s].
-  double lookahead_m = 0.6;
-  double lookahead_time_s = 0.5;
+  /// Lookahead along the path: this much [m] plus this time's travel [s] plus the travel while the
+  /// wheels turn by this angle [deg]: slow steering must look farther to be stable.
+  double lookahead_m = 0.5;
+  double lookahead_time_s = 0.25;
+  double lookahead_turn_deg = 30.0;
   /// Dead time between a command and the actuators [s], beside their rate and lag.
   double dead_time_s = 0.0;
   /// At a standstill the wheels are ready within this of the wanted angle [deg].
@@ -33,6 +35,8 @@ struct PurePursuitConfig {
       "Lookahead along the path at a standstill [m]");
     v("lookahead_time_s", lookahead_time_s, config::Range{0.0, 10.0},
       "Lookahead added per speed [s]");
+    v("lookahead_turn_deg", lookahead_turn_deg, config::Range{0.0, 180.0},
+      "Lookahead added for the time in which the wheels turn by this [deg]");
     v("dead_time_s", dead_time_s, config::Range{0.0, 2.0},
       "From a command to the actuators' answer, beside rate and lag [s]");
     v("steering_tolerance_deg", steering_tolerance_deg, config::Range{0.01, 10.0},

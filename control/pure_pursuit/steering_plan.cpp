@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSlowest = 0.1;         // speed that a plan counts with at least [m/s]
 constexpr double kSameCurvature = 1e-6;  // [1/m]
-constexpr int kPasses = 3;  // the rate of curvature depends on the steering, which the solver finds
+constexpr int kPasses = 4;               // of the solver, each linearised around the last
 
 }  // namespace
 
@@ -38,9 +38,8 @@ std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle&
     before = &piece;
     s += piece.length;
   }
-  std::stable_sort(zones.begin(), zones.end(), [](const SpeedZone& a, const SpeedZone& b) {
-    return a.begin_s < b.begin_s;
-  });
+  std::stable_sort(zones.begin(), zones.end(),
+                   [](const SpeedZone& a, const SpeedZone& b) { return a.begin_s < b.begin_s; });
   return zones;
 }
 
@@ -115,21 +114,34 @@ struct SteeringPlan::Builder {
       if (length <= 1e-9) continue;
       const int count = static_cast<int>(std::ceil(length / config.step_m));
       for (int i = 0; i < count; ++i) {
-        cells.push_back({length / count, direction * piece.curvature, 0.0});
+        cells.push_back({length / count, direction * piece.curvature, 0.0, RampState::Zero()});
         borders.push_back(from + length * (i + 1) / count);
       }
     }
   }
 
-  void bound_rates(int segment, const std::vector<RampState>* states) {
+  double cell_speed(int segment, std::size_t i) const {
+    return speed(segment, 0.5 * (borders[i] + borders[i + 1]));
+  }
+
+  // The rate of curvature that the steering's rate allows: kappa = tan(delta) / wheelbase.
+  void bound_rate(int segment, std::size_t i, double kappa) {
     const double wheelbase = vehicle.wheelbase_m;
+    const double slope = (1.0 + wheelbase * wheelbase * kappa * kappa) / wheelbase;
+    cells[i].rate_bound =
+        config.rate_share * vehicle.steering_rate_radps / cell_speed(segment, i) * slope;
+  }
+
+  // Brings the solver's linear model to the exact one, around the ramp it found last.
+  void relinearise(int segment, const std::vector<RampState>& ramp) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const double kappa = states == nullptr ? cells[i].path_curvature
-                                             : 0.5 * ((*states)[i](2) + (*states)[i + 1](2));
-      const double v = speed(segment, 0.5 * (borders[i] + borders[i + 1]));
-      // kappa = tan(delta) / wheelbase.
-      const double slope = (1.0 + wheelbase * wheelbase * kappa * kappa) / wheelbase;
-      cells[i].rate_bound = config.rate_share * vehicle.steering_rate_radps / v * slope;
+      RampCell& cell = cells[i];
+      const double kappa = 0.5 * (ramp[i](2) + ramp[i + 1](2));
+      bound_rate(segment, i, kappa);
+      RampState exact = advance_state(ramp[i], kappa, cell);
+      exact(2) = ramp[i + 1](2);
+      // The ramp obeys the linear model with the last correction.
+      cell.correction += exact - ramp[i + 1];
     }
   }
 
@@ -145,18 +157,25 @@ struct SteeringPlan::Builder {
       plan.nodes_.push_back({borders[i], {direction * x(2), direction * x(0), x(1)}});
       if (i == cells.size()) break;
       const RampCell& cell = cells[i];
-      const double back = 2.0 * (x(0) - ramp[i](0)) + 2.0 * (x(1) - ramp[i](1));
+      const double v = cell_speed(window.segment, i);
+      // Pure pursuit's gains, for a lookahead that the steering can serve.
+      const double ahead = 1.0 + 0.5 * v / vehicle.steering_rate_radps;
+      const double back =
+          2.0 / (ahead * ahead) * (x(0) - ramp[i](0)) + 2.0 / ahead * (x(1) - ramp[i](1));
       const double wanted = std::clamp(steering(ramp[i + 1](2) - back), -limit, limit);
-      const double most = vehicle.steering_rate_radps * cell.length /
-                          speed(window.segment, 0.5 * (borders[i] + borders[i + 1]));
+      const double most = vehicle.steering_rate_radps * cell.length / v;
       delta += std::clamp(wanted - delta, -most, most);
       const double mean = 0.5 * (x(2) + std::tan(delta) / vehicle.wheelbase_m);
-      // e' = (1 - kp e) tan psi, psi' = kappa (1 - kp e) / cos psi - kp, by the midpoint rule.
-      RampState middle = x + 0.5 * cell.length * slope(x, mean, cell.path_curvature);
-      x += cell.length * slope(middle, mean, cell.path_curvature);
+      x = advance_state(x, mean, cell);
     }
     window.last = plan.nodes_.size() - 1;
     state = x;
+  }
+
+  // e' = (1 - kp e) tan psi, psi' = kappa (1 - kp e) / cos psi - kp, by the midpoint rule.
+  static RampState advance_state(const RampState& x, double kappa, const RampCell& cell) {
+    const RampState middle = x + 0.5 * cell.length * slope(x, kappa, cell.path_curvature);
+    return x + cell.length * slope(middle, kappa, cell.path_curvature);
   }
 
   static RampState slope(const RampState& x, double kappa, double path_curvature) {
@@ -179,9 +198,12 @@ struct SteeringPlan::Builder {
     RampWeights weights;
     weights.heading = config.heading_weight_m * config.heading_weight_m;
     const double most = std::tan(vehicle.max_steering_rad()) / vehicle.wheelbase_m;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      bound_rate(window.segment, i, cells[i].path_curvature);
+    }
     const std::vector<RampState>* ramp = nullptr;
     for (int pass = 0; pass < kPasses; ++pass) {
-      bound_rates(window.segment, ramp);
+      if (ramp != nullptr) relinearise(window.segment, *ramp);
       ramp = &solver.solve(cells, start, at_rest, most, weights);
     }
     drive(window, direction, *ramp);

@@ -23,7 +23,7 @@ struct SteeringPlanConfig {
   double heading_weight_m = 0.15;
   /// At a step of curvature the vehicle slows down so far that a ramp there, split evenly, is off
   /// the path by no more than this [m] ...
-  double step_error_m = 0.01;
+  double step_error_m = 0.02;
   /// ... but not below this share of the leg's speed.
   double least_speed_ratio = 0.5;
 

@@ -23,7 +23,7 @@ TEST(PurePursuitBars, Print) {
         reference = rows({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 3.0 / std::tan(deg_to_rad(60.0)),
                          Turn::kFishtail);
       if (which == 'G') reference = rows({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, 1.9, Turn::kFishtail);
-      const Drive d = drive(vehicle, {}, reference);
+      PurePursuitConfig c; auto env=[](const char*n,double&x){if(const char*e=std::getenv(n))x=std::atof(e);}; env("ERR",c.plan.step_error_m);env("RATIO",c.plan.least_speed_ratio);env("LA",c.lookahead_m);env("LT",c.lookahead_time_s);env("SHARE",c.plan.rate_share);env("MARGIN",c.plan.margin_m);env("HW",c.plan.heading_weight_m);env("STEP",c.plan.step_m);const Drive d = drive(vehicle, c, reference);
       std::printf(
           "%c rate %.1f status %d all %.4f rows %.4f turns %.4f max %.4f end %.4f against %d turn "
           "speed %.3f s %.1f of %.1f\n",
