@@ -4,11 +4,17 @@
 #include <algorithm>
 
 namespace headland {
+namespace {
+
+// The ramp ends on the path: weights of lateral [], heading [m^2] and curvature [m^4] there.
+const Eigen::Vector3d kEndWeights{10.0, 10.0, 1.0};
+
+}  // namespace
 
 // One cell of length h, exact for the piecewise linear model.
 void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeights& weights) {
   stages_.assign(cells.size(), {});
-  Eigen::Matrix3d cost = Eigen::Vector3d(1.0, weights.heading, 0.0).asDiagonal();
+  Eigen::Matrix3d cost = kEndWeights.asDiagonal();
   for (std::size_t i = cells.size(); i-- > 0;) {
     const double h = cells[i].length;
     const double bend = cells[i].path_curvature;
@@ -36,7 +42,7 @@ void BoundedRamp::factorise(const std::vector<RampCell>& cells, const RampWeight
 // The linear part of the cost to go, from the last border to the first.
 Eigen::Vector3d BoundedRamp::sweep_back(const std::vector<RampCell>& cells,
                                         const RampWeights& weights) {
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();
+  Eigen::Vector3d linear(0.0, 0.0, -kEndWeights(2) * cells.back().path_curvature);
   for (std::size_t i = cells.size(); i-- > 0;) {
     Stage& stage = stages_[i];
     const double pull = cells[i].length * weights.penalty;

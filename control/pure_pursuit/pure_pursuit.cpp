@@ -35,9 +35,7 @@ void PurePursuit::do_start() {
   gear_left_ = 0.0;
   changing_gear_ = false;
   has_last_ = false;
-  // Long enough for the wheels to turn from lock to lock, so that stuck wheels cannot hold it up.
-  steering_left_ = 2.0 * vehicle_.max_steering_rad() / vehicle_.steering_rate_radps +
-                   10.0 * vehicle_.steering_lag_s + 0.5;
+  steering_left_ = longest_steering();
 }
 
 // The vehicle's own motion since the last tick [m, map]: mean speed along the mean heading.
@@ -88,12 +86,17 @@ double PurePursuit::command_angle(double wanted, double actual, double dt) const
   return std::clamp(actual + std::clamp(inside - actual, -most, most) / share, -limit, limit);
 }
 
-bool PurePursuit::ready(const VehicleState& measured) const {
-  const double wanted =
-      std::atan(vehicle_.wheelbase_m * plan_.at(reference().path, s_, segment_).curvature);
+// The angle that the plan wants at the progress [rad].
+double PurePursuit::planned_angle() const {
   const double limit = vehicle_.max_steering_rad();
-  return std::abs(std::clamp(wanted, -limit, limit) - measured.steering) <=
-         deg_to_rad(config_.steering_tolerance_deg);
+  const double curvature = plan_.at(reference().path, s_, segment_).curvature;
+  return std::clamp(std::atan(vehicle_.wheelbase_m * curvature), -limit, limit);
+}
+
+// Long enough for the wheels to turn from lock to lock, so that stuck wheels cannot hold it up.
+double PurePursuit::longest_steering() const {
+  return 2.0 * vehicle_.max_steering_rad() / vehicle_.steering_rate_radps +
+         10.0 * vehicle_.steering_lag_s + 0.5;
 }
 
 TrackOutput PurePursuit::stop(const VehicleState& measured, TrackStatus status) const {
@@ -102,8 +105,6 @@ TrackOutput PurePursuit::stop(const VehicleState& measured, TrackStatus status) 
 
 // Stands until the vehicle is still, the gear is in and the wheels have turned.
 TrackOutput PurePursuit::stand(const VehicleState& measured, double dt) {
-  const double wanted =
-      std::atan(vehicle_.wheelbase_m * plan_.at(reference().path, s_, segment_).curvature);
   const bool still = std::abs(measured.speed) <= kStill;
   if (still) {
     gear_left_ -= dt;
@@ -111,22 +112,22 @@ TrackOutput PurePursuit::stand(const VehicleState& measured, double dt) {
   }
   const TrackStatus status = changing_gear_ ? TrackStatus::kGearChange : TrackStatus::kTracking;
   // Still rolling: the wheels stay as they are.
-  const double angle = still ? wanted : measured.steering;
+  const double angle = still ? planned_angle() : measured.steering;
   return {{0.0, command_angle(angle, measured.steering, dt), 0.0}, status, s_};
 }
 
 TrackOutput PurePursuit::arrive(const VehicleState& measured) {
   if (segment_ + 1 == static_cast<int>(reference().path.segments().size())) {
-    mode_ = Mode::kDone;
-    return stop(measured, TrackStatus::kDone);
+    const bool still = std::abs(measured.speed) <= kStill;
+    mode_ = still ? Mode::kDone : Mode::kStopping;
+    return stop(measured, still ? TrackStatus::kDone : TrackStatus::kTracking);
   }
   ++segment_;
   s_ = segment().begin_s;
   mode_ = Mode::kStanding;
   changing_gear_ = true;
   gear_left_ = vehicle_.gear_change_s;
-  steering_left_ = 2.0 * vehicle_.max_steering_rad() / vehicle_.steering_rate_radps +
-                   10.0 * vehicle_.steering_lag_s + 0.5;
+  steering_left_ = longest_steering();
   return stop(measured, TrackStatus::kGearChange);
 }
 
@@ -173,9 +174,12 @@ TrackOutput PurePursuit::do_step(const VehicleState& measured, double dt) {
   const Point2 place = filter_.position();
   const Pose2 pose{place.x(), place.y(), measured.pose.yaw + filter_.heading_error()};
   if (mode_ == Mode::kDone) return stop(measured, TrackStatus::kDone);
+  if (mode_ == Mode::kStopping) return arrive(measured);
   if (mode_ == Mode::kStanding) {
     const bool rolling = std::abs(measured.speed) > kStill;
-    const bool in_gear = gear_left_ <= 0.0 && (ready(measured) || steering_left_ <= 0.0);
+    const bool turned =
+        std::abs(planned_angle() - measured.steering) <= deg_to_rad(config_.steering_tolerance_deg);
+    const bool in_gear = gear_left_ <= 0.0 && (turned || steering_left_ <= 0.0);
     // A start while driving goes on driving.
     const bool moving_start = !changing_gear_ && rolling;
     if (!moving_start && (rolling || !in_gear)) return stand(measured, dt);

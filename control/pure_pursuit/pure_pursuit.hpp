@@ -66,7 +66,8 @@ class PurePursuit : public Tracker {
 
  private:
   // Standing: the wheels turn to the angle of the start or behind the cusp, the gear changes.
-  enum class Mode { kStanding, kDriving, kDone };
+  // Stopping: past the end, not yet still.
+  enum class Mode { kStanding, kDriving, kStopping, kDone };
 
   void do_start() override;
   TrackOutput do_step(const VehicleState& measured, double dt) override;
@@ -79,7 +80,8 @@ class PurePursuit : public Tracker {
   Pose2 planned_pose(double s) const;
   double pursuit(const Pose2& pose, const Point2& target) const;
   double command_angle(double wanted, double actual, double dt) const;
-  bool ready(const VehicleState& measured) const;
+  double planned_angle() const;
+  double longest_steering() const;
   TrackOutput arrive(const VehicleState& measured);
   TrackOutput stand(const VehicleState& measured, double dt);
   TrackOutput drive(const VehicleState& measured, const Pose2& pose, double dt);

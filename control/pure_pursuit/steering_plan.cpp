@@ -65,10 +65,11 @@ struct SteeringPlan::Builder {
     return std::max(kSlowest, std::min(from_rest, speeds.limit(s, segment, 0.0)));
   }
 
-  // The distance that the steering needs for a step of the path's curvature at s [m].
+  // The distance planned on both sides of a step of the path's curvature at s [m]: the steering may
+  // turn too far first, and back.
   double reach(int segment, double s, double from, double to) const {
     const double seconds = std::abs(steering(to) - steering(from)) / vehicle.steering_rate_radps;
-    return config.margin_m + speed(segment, s) * seconds;
+    return config.margin_m + 2.0 * speed(segment, s) * seconds;
   }
 
   void add_windows() {
