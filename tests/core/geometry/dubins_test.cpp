@@ -123,6 +123,12 @@ TEST(Dubins, TurnsOnTheSpotInThreeArcsTheMiddleOneBeyondHalfATurn) {
   EXPECT_NEAR(curve.begin()[1].length, 2.0 * 5.0 * kPi / 3.0, 1e-9);
 }
 
+TEST(Dubins, HoldsNoPieceOfRoundingAlone) {
+  test::expect_no_piece_of_rounding(0.0, "rounding", shortest_dubins);
+  test::expect_no_piece_of_rounding(100.0, "rounding", shortest_dubins);
+  test::expect_no_piece_of_rounding(5000.0, "rounding", shortest_dubins);
+}
+
 TEST(Dubins, HoldsItsPromiseFarFromTheOrigin) {
   RandomStream random(5, "dubins");
   for (int i = 0; i < 20000; ++i) {

@@ -116,6 +116,12 @@ TEST(ReedsShepp, RoundingPutsNoCuspIntoAForwardCurve) {
   }
 }
 
+TEST(ReedsShepp, HoldsNoPieceOfRoundingAlone) {
+  test::expect_no_piece_of_rounding(0.0, "rounding", shortest_reeds_shepp);
+  test::expect_no_piece_of_rounding(100.0, "rounding", shortest_reeds_shepp);
+  test::expect_no_piece_of_rounding(5000.0, "rounding", shortest_reeds_shepp);
+}
+
 TEST(ReedsShepp, HoldsItsPromiseFarFromTheOrigin) {
   RandomStream random(6, "reeds_shepp");
   for (int i = 0; i < 20000; ++i) {
