@@ -101,31 +101,32 @@ double first_turn(const internal::TurnSector& sector, double u, double v, bool f
 
 Curve build(const UnitGoal& goal, const Solution& found, double radius) {
   const double side = found.mirrored ? -1.0 : 1.0;
-  const double left = side / radius;
   const double extra = found.full_circle ? kTwoPi : 0.0;
-  const Link same = found.mirrored ? internal::mirrored_right_to_right(goal)
-                                   : internal::left_to_left(goal);
+  const Link same =
+      found.mirrored ? internal::mirrored_right_to_right(goal) : internal::left_to_left(goal);
   Curve curve;
+  const auto add = [&](double turn, double length) {
+    internal::add_piece(curve, turn, length, found.length, goal, radius);
+  };
   if (found.word == Word::kSameSide) {
     const internal::TurnSector sector = internal::turn_sector(goal, found.mirrored);
     const double t = first_turn(sector, same.u, same.v, found.full_circle, goal.tolerance);
-    curve.add({left, t * radius});
-    curve.add({0.0, std::sqrt(same.squared) * radius});
-    curve.add({left, (sector.total() + extra - t) * radius});
+    add(side, t);
+    add(0.0, std::sqrt(same.squared));
+    add(side, sector.total() + extra - t);
   } else if (found.word == Word::kOtherSide) {
-    const Link other = found.mirrored ? internal::mirrored_right_to_left(goal)
-                                      : internal::left_to_right(goal);
+    const Link other =
+        found.mirrored ? internal::mirrored_right_to_left(goal) : internal::left_to_right(goal);
     const double p = std::sqrt(std::max(other.squared - 4.0, 0.0));
-    curve.add({left, found.first * radius});
-    curve.add({0.0, p * radius});
-    curve.add({-left, (found.length - p - found.first) * radius});
+    add(side, found.first);
+    add(0.0, p);
+    add(-side, found.length - p - found.first);
   } else {
     const OuterTurns turns = outer_turns(goal, same, found.mirrored, found.first);
-    const double t =
-        first_turn(turns.sector, turns.u, turns.v, found.full_circle, goal.tolerance);
-    curve.add({left, t * radius});
-    curve.add({-left, turns.middle * radius});
-    curve.add({left, (turns.sector.total() + extra - t) * radius});
+    const double t = first_turn(turns.sector, turns.u, turns.v, found.full_circle, goal.tolerance);
+    add(side, t);
+    add(-side, turns.middle);
+    add(side, turns.sector.total() + extra - t);
   }
   return curve;
 }

@@ -14,11 +14,12 @@ std::optional<Curve> one_sided(const internal::UnitGoal& goal, bool mirrored, do
   const double straight = std::sqrt(w.squared);
   if (straight <= goal.tolerance || !sector.contains(-w.u, -w.v, goal.tolerance)) return {};
   const double first = sector.first_turn(-w.u, -w.v, goal.tolerance);
-  const double curvature = mirrored ? -1.0 / radius : 1.0 / radius;
+  const double side = mirrored ? -1.0 : 1.0;
+  const double total = sector.total() + straight;
   Curve curve;
-  curve.add({curvature, first * radius});
-  curve.add({0.0, -straight * radius});
-  curve.add({curvature, (sector.total() - first) * radius});
+  internal::add_piece(curve, side, first, total, goal, radius);
+  internal::add_piece(curve, 0.0, -straight, total, goal, radius);
+  internal::add_piece(curve, side, sector.total() - first, total, goal, radius);
   return curve;
 }
 

@@ -22,7 +22,7 @@ namespace {
 using internal::Link;
 using internal::UnitGoal;
 
-constexpr double kEps = 1e-12;  // [rad] by which a turn may have the wrong sign; see is_rounding
+constexpr double kEps = 1e-12;  // [rad] by which a turn may have the wrong sign; see add_piece
 constexpr double kQuarter = 0.5 * kPi;
 
 enum class Word {
@@ -279,13 +279,6 @@ class Search {
   Solution best_;
 };
 
-// A piece [radii] that is nothing but rounding must not put a cusp into the curve; it is dropped
-// where that moves the end by far less than an answer may miss the goal.
-bool is_rounding(double length, const Solution& found, const UnitGoal& goal) {
-  return std::abs(length) <= kEps &&
-         std::abs(length) * (found.length + 2.0) <= 0.1 * goal.tolerance;
-}
-
 Curve build(const UnitGoal& goal, const Solution& found, double radius) {
   const Shape& shape = kShapes[static_cast<std::size_t>(found.word)];
   Curve curve;
@@ -297,8 +290,8 @@ Curve build(const UnitGoal& goal, const Solution& found, double radius) {
                           : from == 'v' ? found.v
                           : from == 'n' ? -found.u
                                         : -kQuarter;
-    if (is_rounding(length, found, goal)) continue;
-    curve.add({side * found.mirror / radius, found.flip * length * radius});
+    internal::add_piece(curve, side * found.mirror, found.flip * length, found.length, goal,
+                        radius);
   }
   return curve;
 }

@@ -64,4 +64,26 @@ void expect_never_longer_than_constructions(int count, std::string_view name, Co
   }
 }
 
+/// Asks for the curve to the end of an arc, a straight, or both: the answer must not hold a piece
+/// that is rounding alone. To whoever drives the curve it would be a jump of the steering.
+template <typename Solve>
+void expect_no_piece_of_rounding(double half_side, std::string_view name, Solve solve) {
+  RandomStream random(20261123, name);
+  int failures = 0;
+  for (int i = 0; i < 20000 && failures < 5; ++i) {
+    const Pose2 from = random_pose(random, half_side);
+    const CurvePiece arc{random.index(2) == 0 ? 0.5 : -0.5, random.uniform(0.1, 3.0)};
+    const CurvePiece straight{0.0, random.uniform(0.1, 30.0)};
+    const int kind = random.index(4);
+    Curve known;
+    if (kind <= 1) known.add(arc);
+    if (kind >= 1) known.add(straight);
+    if (kind == 3) known.add(arc);
+    const Curve found = solve(from, known.end_pose(from), 2.0);
+    if (found.count() == known.count()) continue;
+    ++failures;
+    ADD_FAILURE() << "query " << i << ": built " << known.word() << " and found " << found.word();
+  }
+}
+
 }  // namespace headland::test

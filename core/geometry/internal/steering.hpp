@@ -38,8 +38,17 @@ inline UnitGoal unit_goal(const Pose2& from, const Pose2& to, double radius) {
   const double s = std::sin(from.yaw);
   double phi = to.yaw - from.yaw;
   if (!(phi > -kPi && phi <= kPi)) phi = wrap_angle(phi);
-  return {c * dx + s * dy, c * dy - s * dx, phi, std::sin(phi), std::cos(phi),
-          kReachTolerance * scale};
+  return {c * dx + s * dy, c * dy - s * dx, phi,
+          std::sin(phi),   std::cos(phi),   kReachTolerance * scale};
+}
+
+/// Appends a piece [radii] unless it is nothing but rounding: it is left out where that moves the
+/// end of a curve of `total` radii by far less than an answer may miss the goal. Whoever drives
+/// the curve would take such a piece for a jump of the steering, or for a change of gear.
+inline void add_piece(Curve& curve, double turn, double length, double total, const UnitGoal& goal,
+                      double radius) {
+  if (std::abs(length) * (total + 2.0) <= 0.5 * goal.tolerance) return;
+  curve.add({turn / radius, length * radius});
 }
 
 /// The vector between the turning circles of one side and its length.
@@ -53,9 +62,7 @@ inline Link link(double u, double v) { return {u, v, u * u + v * v}; }
 
 // From the start's circle to the goal's; right-handed words are the left-handed ones of the
 // mirrored problem, so the right-hand links come mirrored.
-inline Link left_to_left(const UnitGoal& g) {
-  return link(g.x - g.sin_phi, g.y - 1.0 + g.cos_phi);
-}
+inline Link left_to_left(const UnitGoal& g) { return link(g.x - g.sin_phi, g.y - 1.0 + g.cos_phi); }
 inline Link left_to_right(const UnitGoal& g) {
   return link(g.x + g.sin_phi, g.y - 1.0 - g.cos_phi);
 }

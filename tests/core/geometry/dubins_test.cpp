@@ -123,9 +123,15 @@ TEST(Dubins, TurnsOnTheSpotInThreeArcsTheMiddleOneBeyondHalfATurn) {
   EXPECT_NEAR(curve.begin()[1].length, 2.0 * 5.0 * kPi / 3.0, 1e-9);
 }
 
+TEST(Dubins, HoldsNoPieceOfRoundingAlone) {
+  test::expect_no_piece_of_rounding(0.0, "rounding", shortest_dubins);
+  test::expect_no_piece_of_rounding(100.0, "rounding", shortest_dubins);
+  test::expect_no_piece_of_rounding(5000.0, "rounding", shortest_dubins);
+}
+
 TEST(Dubins, HoldsItsPromiseFarFromTheOrigin) {
   RandomStream random(5, "dubins");
-  for (int i = 0; i < 2000; ++i) {
+  for (int i = 0; i < 20000; ++i) {
     const Pose2 from{random.uniform(-5000.0, 5000.0), random.uniform(-5000.0, 5000.0),
                      random.uniform(-20.0, 20.0)};
     const Curve known = test::random_forward_construction(random, 2.0);

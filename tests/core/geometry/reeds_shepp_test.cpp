@@ -116,6 +116,25 @@ TEST(ReedsShepp, RoundingPutsNoCuspIntoAForwardCurve) {
   }
 }
 
+TEST(ReedsShepp, HoldsNoPieceOfRoundingAlone) {
+  test::expect_no_piece_of_rounding(0.0, "rounding", shortest_reeds_shepp);
+  test::expect_no_piece_of_rounding(100.0, "rounding", shortest_reeds_shepp);
+  test::expect_no_piece_of_rounding(5000.0, "rounding", shortest_reeds_shepp);
+}
+
+TEST(ReedsShepp, HoldsItsPromiseFarFromTheOrigin) {
+  RandomStream random(6, "reeds_shepp");
+  for (int i = 0; i < 20000; ++i) {
+    Pose2 from = test::random_pose(random, 5000.0);
+    from.yaw *= 6.0;
+    const Curve known = test::random_reversing_construction(random, 2.0);
+    const Pose2 to = known.end_pose(from);
+    const Curve found = shortest_reeds_shepp(from, to, 2.0);
+    ASSERT_TRUE(test::obeys_the_laws(found, from, to, 2.0)) << i;
+    ASSERT_LE(found.length(), known.length() + 1e-9) << i;
+  }
+}
+
 // A nearly parallel shift by h costs about sqrt(8 h R): the metric is not smooth, but continuous.
 TEST(ReedsShepp, ASmallShiftSidewaysCostsASmallManoeuvre) {
   for (const double shift : {1e-2, 1e-4, 1e-6}) {
