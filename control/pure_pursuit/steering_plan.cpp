@@ -180,8 +180,10 @@ struct SteeringPlan::Builder {
   }
 
   static RampState slope(const RampState& x, double kappa, double path_curvature) {
-    const double stretch = 1.0 - path_curvature * x(0);
-    return {stretch * std::tan(x(1)), kappa * stretch / std::cos(x(1)) - path_curvature, 0.0};
+    // Bounded, so that a path which cannot be followed at all still gives a finite plan.
+    const double stretch = std::clamp(1.0 - path_curvature * x(0), 0.2, 5.0);
+    const double heading = std::clamp(x(1), -1.2, 1.2);
+    return {stretch * std::tan(heading), kappa * stretch / std::cos(heading) - path_curvature, 0.0};
   }
 
   void solve(Window& window, double last_direction) {

@@ -219,6 +219,29 @@ TEST(PurePursuit, StopsWhenThePathIsLostOrAMeasurementIsNotANumber) {
   EXPECT_EQ(tracker.step({}, kDt).status, TrackStatus::kTracking);  // and goes on when back
 }
 
+TEST(PurePursuit, AnswersPathsItCannotFollowWithFiniteCommandsWithinTheLimits) {
+  RandomStream random(3, "paths");
+  const Vehicle vehicle = study_vehicle(30.0, 0.2);  // turns on 4.3 m at best
+  for (int trial = 0; trial < 60; ++trial) {
+    Reference reference;
+    Pose2 from;
+    for (int i = 0; i < 8; ++i) {
+      const Gear gear = random.normal() > -0.8 ? Gear::kForward : Gear::kReverse;
+      const double length = 0.02 + std::abs(2.0 * random.normal());
+      reference.path.append({from, random.normal(), length, gear, i});
+      reference.leg_speed.push_back(0.3 + std::abs(random.normal()));
+      from = reference.path.end_pose();
+    }
+    const Drive d = drive(vehicle, {}, reference);
+    EXPECT_TRUE(d.last == TrackStatus::kDone || d.last == TrackStatus::kPathLost) << trial;
+    EXPECT_EQ(d.against_gear, 0);
+    for (const TrackOutput& out : d.outputs) {
+      ASSERT_TRUE(std::isfinite(out.command.speed));
+      ASSERT_LE(std::abs(out.command.steering), vehicle.max_steering_rad());  // false for NaN
+    }
+  }
+}
+
 TEST(PurePursuit, IsDoneAtOnceOnAnEmptyPath) {
   PurePursuit tracker(study_vehicle(40.0, 1.0), {});
   const Reference reference;
