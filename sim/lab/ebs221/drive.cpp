@@ -24,15 +24,40 @@ void euler(const SeedPlant& plant, double wheelbase, double steering, Pose2& pos
   }
 }
 
-// Nearest point of the path around the tracker's progress, never across a cusp: there the path
-// runs back on itself.
-PathError error_at(const Path& path, const Point2& position, double progress) {
-  const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(progress).segment)];
-  const Projection nearest = path.project(position, std::max(segment.begin_s, progress - kWindow),
-                                          std::min(segment.end_s, progress + kWindow));
-  const int leg = path.at(std::min(nearest.s, segment.end_s - 1e-9)).leg;
-  return {nearest.s, nearest.lateral_error, nearest.distance, leg};
-}
+// Which stretch of one gear the vehicle is on. A stop at a cusp belongs to the stretch before it
+// until the vehicle stands, wherever the tracker already looks.
+class GearWatch {
+ public:
+  explicit GearWatch(const Path& path) : path_(path) {}
+
+  // True if the vehicle moves against the gear of its stretch, or a stretch was left out.
+  bool wrong(double progress, double speed) {
+    const int ahead = path_.at(progress).segment;
+    const bool skipped = ahead > segment_ + 1;
+    const bool follows = speed * sign(segment(ahead).gear) >= -kStanding;
+    if (ahead != segment_ && follows) segment_ = ahead;
+    return skipped || speed * sign(segment(segment_).gear) < -kStanding;
+  }
+
+  // Error to the nearest point around the progress, within the stretch: at a cusp the path runs
+  // back on itself.
+  PathError error(const Point2& position, double progress) const {
+    const PathSegment& own = segment(segment_);
+    const Projection nearest =
+        path_.project(position, std::clamp(progress - kWindow, own.begin_s, own.end_s),
+                      std::clamp(progress + kWindow, own.begin_s, own.end_s));
+    const int leg = path_.at(std::min(nearest.s, own.end_s - 1e-9)).leg;
+    return {nearest.s, nearest.lateral_error, nearest.distance, leg};
+  }
+
+ private:
+  const PathSegment& segment(int number) const {
+    return path_.segments()[static_cast<std::size_t>(number)];
+  }
+
+  const Path& path_;
+  int segment_ = 0;
+};
 
 }  // namespace
 
@@ -67,19 +92,21 @@ FieldDrive drive_our_field(Tracker& tracker, const Vehicle& vehicle, const Refer
   VehicleState state;
   state.pose = path.start_pose();
   tracker.start(reference);
+  GearWatch watch(path);
   for (int k = 0; k < most; ++k) {
     const TrackOutput out = tracker.step(state, period);
     drive.completed = out.status == TrackStatus::kDone && std::abs(state.speed) < kStanding;
     if (drive.completed || out.status == TrackStatus::kPathLost) break;
-    drive.positions.push_back(state.pose.position());
-    drive.errors.push_back(error_at(path, state.pose.position(), out.s));
-    if (state.speed * sign(path.at(out.s).gear) < -kStanding) ++drive.wrong_gear_count;
+    drive.duration += period;
+    drive.wrong_gear_count += watch.wrong(out.s, state.speed) ? 1 : 0;
     const Point2 before = state.pose.position();
     state = step_vehicle(vehicle, state, out.command, period);
-    drive.steering.push_back(state.steering);
     drive.distance += (state.pose.position() - before).norm();
+    if (std::abs(state.speed) < kStanding) continue;
+    drive.positions.push_back(before);
+    drive.errors.push_back(watch.error(before, out.s));
+    drive.steering.push_back(state.steering);
   }
-  drive.duration = static_cast<double>(drive.positions.size()) * period;
   return drive;
 }
 

@@ -38,7 +38,8 @@ FieldDrive drive_seed_field(const SeedPlant& plant, const SeedPurePursuitConfig&
                             const SeedRoute& route, const Path& path, const Pose2& start);
 
 /// Drives a tracker of ours on the vehicle of core/model, which has a steering rate, from
-/// standstill at the path's start to standstill at its end.
+/// standstill at the path's start to standstill at its end. Periods at a standstill (gear changes)
+/// count in the duration, not in the errors.
 FieldDrive drive_our_field(Tracker& tracker, const Vehicle& vehicle, const Reference& reference,
                            double period);
 

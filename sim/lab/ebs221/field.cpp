@@ -85,11 +85,12 @@ FieldPath field_path(const std::vector<FieldLink>& links, double radius, TurnSha
                                   leg);
       continue;
     }
-    const auto switch_back = shape == TurnShape::kFishtail && link.kind == LegKind::kTurn
-                                 ? fishtail(link.from, link.to, radius)
-                                 : std::nullopt;
-    result.path.append(switch_back ? *switch_back : shortest_dubins(link.from, link.to, radius),
-                       link.from, leg);
+    Curve turn = shortest_dubins(link.from, link.to, radius);
+    if (shape == TurnShape::kFishtail && link.kind == LegKind::kTurn) {
+      const auto switch_back = fishtail(link.from, link.to, radius);
+      if (switch_back && switch_back->length() < turn.length()) turn = *switch_back;
+    }
+    result.path.append(turn, link.from, leg);
   }
   return result;
 }

@@ -50,7 +50,7 @@ std::vector<FieldLink> field_links(const Ebs221Field& field, const RowOrder& ord
 
 enum class TurnShape {
   kDubins,
-  kFishtail,  ///< where the rows are nearer than 2 R; Dubins elsewhere
+  kFishtail,  ///< where it is shorter: between rows nearer than 2 R; Dubins elsewhere
 };
 
 /// The drive as an exact path; leg numbers are link numbers.
