@@ -29,18 +29,24 @@ int SeedRoute::last_point(int of_link) const {
   return static_cast<int>(std::upper_bound(link.begin(), link.end(), of_link) - link.begin()) - 1;
 }
 
+const Point2& SeedRoute::goal(int index, double lookahead) const {
+  auto at = static_cast<std::size_t>(index);
+  const auto last = static_cast<std::size_t>(last_point(link[at]));
+  for (double s = 0.0; at < last && s < lookahead; ++at) s += (points[at + 1] - points[at]).norm();
+  return points[at];
+}
+
+double seed_steering(const Point2& goal, const Pose2& T_map_base, double lookahead,
+                     double wheelbase) {
+  const double y = (goal - T_map_base.position()).dot(T_map_base.left());
+  return std::atan(wheelbase * 2.0 * y / (lookahead * lookahead));
+}
+
 SeedPurePursuit::SeedPurePursuit(const SeedPurePursuitConfig& config, const SeedRoute& route)
     : config_(config), route_(route), limit_(deg_to_rad(config.max_steering_deg)) {}
 
 double SeedPurePursuit::saturate(double steering) const {
   return std::clamp(steering, -limit_, limit_);
-}
-
-// kappa = 2 y / Ld^2 with the nominal Ld, delta = atan(L kappa). (002) Alg. 3, line 23
-double SeedPurePursuit::steer_to(const Point2& goal, const Pose2& T_map_base,
-                                 double lookahead) const {
-  const double y = (goal - T_map_base.position()).dot(T_map_base.left());
-  return saturate(std::atan(config_.wheelbase_m * 2.0 * y / (lookahead * lookahead)));
 }
 
 SeedPurePursuit::Output SeedPurePursuit::step(const Pose2& T_map_base) {
@@ -75,14 +81,8 @@ SeedPurePursuit::Output SeedPurePursuit::step_bounded(const Pose2& T_map_base) {
   const bool turn =
       route_.is_turn[static_cast<std::size_t>(link_)] && link_ != 0 && link_ != last_link;
   const double lookahead = turn ? config_.lookahead_turn_m : config_.lookahead_line_m;
-  const int last = route_.last_point(link_);
-  auto goal = static_cast<std::size_t>(index_);
-  double s = 0.0;
-  while (static_cast<int>(goal) < last && s < lookahead) {
-    s += (route_.points[goal + 1] - route_.points[goal]).norm();
-    ++goal;
-  }
-  return {steer_to(route_.points[goal], T_map_base, lookahead), link_, false};
+  const Point2& goal = route_.goal(index_, lookahead);
+  return {saturate(seed_steering(goal, T_map_base, lookahead, config_.wheelbase_m)), link_, false};
 }
 
 // The first waypoint after the globally nearest one that is at least the lookahead away: what the
@@ -96,7 +96,9 @@ SeedPurePursuit::Output SeedPurePursuit::step_plain(const Pose2& T_map_base) con
          (p - route_.points[goal]).norm() < config_.lookahead_line_m) {
     ++goal;
   }
-  return {steer_to(route_.points[goal], T_map_base, config_.lookahead_line_m), link, false};
+  const double lookahead = config_.lookahead_line_m;
+  return {saturate(seed_steering(route_.points[goal], T_map_base, lookahead, config_.wheelbase_m)),
+          link, false};
 }
 
 }  // namespace headland

@@ -20,7 +20,14 @@ struct SeedRoute {
   int links() const { return static_cast<int>(is_turn.size()); }
   /// Index of the last point of a link.
   int last_point(int of_link) const;
+  /// The point of the same link that lies at least `lookahead` [m] of driven distance after point
+  /// `index`; the link's last one where it ends before. (002) Alg. 3, lines 17-21
+  const Point2& goal(int index, double lookahead) const;
 };
+
+/// (002) Alg. 3, line 23: kappa = 2 y / Ld^2 with the nominal Ld, delta = atan(L kappa) [rad].
+double seed_steering(const Point2& goal, const Pose2& T_map_base, double lookahead,
+                     double wheelbase);
 
 /// Parameters of seed 002's controller; the defaults are those of its part D.
 struct SeedPurePursuitConfig {
@@ -68,7 +75,6 @@ class SeedPurePursuit {
  private:
   Output step_bounded(const Pose2& T_map_base);
   Output step_plain(const Pose2& T_map_base) const;
-  double steer_to(const Point2& goal, const Pose2& T_map_base, double lookahead) const;
   double saturate(double steering) const;
 
   SeedPurePursuitConfig config_;

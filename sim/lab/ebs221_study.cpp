@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,12 +19,12 @@
 namespace headland {
 namespace {
 
-// One drive, measured.
+constexpr double kEulerStep = 0.001;  // of (002)'s plant [s]
+
+// One drive, measured by the rules that apply.
 struct Measured {
-  TrackingMetrics by_seed;  // distance to the waypoints' polyline
-  TrackingMetrics exact;    // distance to the exact path
-  bool has_seed_rule = true;
-  const FieldDrive* drive = nullptr;
+  std::optional<TrackingMetrics> by_seed;  // distance to the waypoints' polyline
+  std::optional<TrackingMetrics> exact;    // distance to the exact path
 };
 
 // Links of a route by kind, the way (002) counts: from and to the depot are turns.
@@ -39,7 +40,7 @@ Measured measure_seed(const FieldDrive& drive, const SeedRoute& route) {
   const std::vector<PathError> errors = seed_errors(drive.positions, route);
   std::vector<PathError> exact = drive.errors;
   for (std::size_t i = 0; i < exact.size(); ++i) exact[i].leg = errors[i].leg;
-  return {tracking_metrics(errors, kinds), tracking_metrics(exact, kinds), true, &drive};
+  return {tracking_metrics(errors, kinds), tracking_metrics(exact, kinds)};
 }
 
 void add_rms(StudyCell& cell, const std::string& prefix, const TrackingMetrics& metrics) {
@@ -48,18 +49,35 @@ void add_rms(StudyCell& cell, const std::string& prefix, const TrackingMetrics& 
   cell.add(prefix + "turn_rms_m", metrics.turn_rms_m);
 }
 
-StudyCell cell_of(const std::string& name, const Measured& m, bool by_seed_rule) {
+StudyCell cell_of(const std::string& name, const FieldDrive& drive, const Measured& m,
+                  const TrackingMetrics& headline) {
   StudyCell cell{name};
-  add_rms(cell, "", by_seed_rule ? m.by_seed : m.exact);
-  cell.add("max_m", (by_seed_rule ? m.by_seed : m.exact).max_m);
-  add_rms(cell, "true_", m.exact);
-  cell.add("true_max_m", m.exact.max_m);
-  if (m.has_seed_rule) add_rms(cell, "seed_", m.by_seed);
-  cell.add("wrong_gear_count", m.drive->wrong_gear_count);
-  cell.add("mean_speed_mps", m.drive->distance / m.drive->duration);
-  cell.add("guided_count", m.drive->guided_count);
-  cell.add("completed_ratio", m.drive->completed ? 1.0 : 0.0);
+  add_rms(cell, "", headline);
+  cell.add("max_m", headline.max_m);
+  if (m.exact) {
+    add_rms(cell, "true_", *m.exact);
+    cell.add("true_max_m", m.exact->max_m);
+  }
+  if (m.by_seed) add_rms(cell, "seed_", *m.by_seed);
+  cell.add("wrong_gear_count", drive.wrong_gear_count);
+  cell.add("mean_speed_mps", drive.distance / drive.duration);
+  cell.add("guided_count", drive.guided_count);
+  cell.add("completed_ratio", drive.completed ? 1.0 : 0.0);
   return cell;
+}
+
+// (002)'s fishtail table also splits the errors by gear.
+void add_gears(const FieldDrive& drive, const std::vector<PathError>& errors, StudyCell& cell) {
+  std::vector<PathError> by_gear = errors;
+  for (std::size_t i = 0; i < by_gear.size(); ++i) {
+    by_gear[i].leg = drive.gears[i] == Gear::kForward ? 0 : 1;
+  }
+  const LegKind kinds[] = {LegKind::kRow, LegKind::kTurn};
+  const TrackingMetrics metrics = tracking_metrics(by_gear, kinds);
+  cell.add("forward_rms_m", metrics.row_rms_m);
+  cell.add("reverse_rms_m", metrics.turn_rms_m);
+  cell.add("reverse_count",
+           static_cast<double>(std::count(drive.gears.begin(), drive.gears.end(), Gear::kReverse)));
 }
 
 // The same metrics over many drives.
@@ -90,9 +108,10 @@ class Study {
     add_seed("E", config_.part_e);
     add_perturbed("E", config_.part_e);
     add_seed("F", config_.part_f);
+    add_seed_fishtail(config_.part_fishtail);
     add_ours("D", config_.part_d, TurnShape::kDubins);
     add_ours("F", config_.part_f, TurnShape::kDubins);
-    add_ours("fishtail", config_.part_d, TurnShape::kFishtail);
+    add_ours("fishtail", config_.part_fishtail, TurnShape::kFishtail);
     add_ours("fishtail_30deg", config_.part_f, TurnShape::kFishtail);
     add_tour_table(result_);
     add_drive_table(result_);
@@ -127,25 +146,51 @@ class Study {
     return field_path(links_of(part), config_.field.radius(part.planned_steering_deg), shape);
   }
 
-  FieldDrive drive_seed(const Ebs221Part& part, const SeedRoute& route, const Path& path) const {
+  SeedPurePursuitConfig follower(const Ebs221Part& part) const {
     SeedPurePursuitConfig controller;
     controller.wheelbase_m = config_.wheelbase_m;
     controller.max_steering_deg = part.max_steering_deg;
     controller.lookahead_line_m = part.lookahead_line_m;
     controller.lookahead_turn_m = part.lookahead_turn_m;
+    return controller;
+  }
+  SeedPlant plant() const {
     SeedPlant plant;
     plant.speed_mps = config_.speed_mps;
     plant.period_s = config_.period_s;
-    plant.euler_steps = std::max(1, static_cast<int>(std::lround(config_.period_s / 0.001)));
-    return drive_seed_field(plant, controller, route, path, config_.field.depot());
+    plant.euler_steps = std::max(1, static_cast<int>(std::lround(config_.period_s / kEulerStep)));
+    return plant;
+  }
+  FieldDrive drive_seed(const Ebs221Part& part, const SeedRoute& route, const Path& path) const {
+    return drive_seed_field(plant(), follower(part), route, path, config_.field.depot());
   }
 
   void add_seed(const std::string& name, const Ebs221Part& part) {
     const SeedRoute route = route_of(part);
     const FieldPath exact = path_of(part, TurnShape::kDubins);
     const FieldDrive drive = drive_seed(part, route, exact.path);
-    result_.cells.push_back(cell_of("track/seed/" + name, measure_seed(drive, route), true));
+    const Measured m = measure_seed(drive, route);
+    result_.cells.push_back(cell_of("track/seed/" + name, drive, m, *m.by_seed));
     add_drive_plots("track/seed/" + name, drive, exact.path, result_);
+  }
+
+  // (002) counts a fishtail's link as a turn; its errors are to the waypoints' polyline alone.
+  void add_seed_fishtail(const Ebs221Part& part) {
+    const std::vector<FieldLink> links = links_of(part);
+    const double radius = config_.field.radius(part.planned_steering_deg);
+    const SeedRoute route =
+        seed_route(links, radius, 0.5 * config_.field.row_length_m, TurnShape::kFishtail);
+    std::vector<bool> fishtails;
+    for (const FieldLink& link : links) fishtails.push_back(seed_fishtails(link, radius));
+    FieldDrive drive =
+        drive_seed_fishtail(plant(), follower(part), route, fishtails, config_.field.depot());
+    drive.errors = seed_errors(drive.positions, route);
+    Measured m;
+    m.by_seed = tracking_metrics(drive.errors, seed_kinds(route));
+    StudyCell cell = cell_of("track/seed/fishtail", drive, m, *m.by_seed);
+    add_gears(drive, drive.errors, cell);
+    add_drive_plots(cell.name, drive, path_of(part, TurnShape::kFishtail).path, result_);
+    result_.cells.push_back(std::move(cell));
   }
 
   // Waypoints off by less than any rounding of them that matters to a farmer.
@@ -162,7 +207,8 @@ class Study {
         p.y() += config_.waypoint_error_m * errors.uniform(-1.0, 1.0);
       }
       const FieldDrive drive = drive_seed(part, moved, exact.path);
-      runs.push_back(cell_of(key, measure_seed(drive, moved), true));
+      const Measured m = measure_seed(drive, moved);
+      runs.push_back(cell_of(key, drive, m, *m.by_seed));
     }
     result_.cells.push_back(merged(key, runs));
   }
@@ -186,14 +232,12 @@ class Study {
     PurePursuit tracker(tractor, config_.tracker);
     const FieldDrive drive = drive_our_field(tracker, tractor, reference, config_.period_s);
     Measured m;
-    m.drive = &drive;
     m.exact = tracking_metrics(drive.errors, two_kinds(plan.kinds));
-    m.has_seed_rule = shape == TurnShape::kDubins;
-    if (m.has_seed_rule) {
+    if (shape == TurnShape::kDubins) {
       const SeedRoute route = route_of(part);
       m.by_seed = tracking_metrics(seed_errors(drive.positions, route), seed_kinds(route));
     }
-    result_.cells.push_back(cell_of("track/ours/" + name, m, false));
+    result_.cells.push_back(cell_of("track/ours/" + name, drive, m, *m.exact));
     add_drive_plots("track/ours/" + name, drive, plan.path, result_);
   }
 
@@ -204,8 +248,10 @@ class Study {
 }  // namespace
 
 std::optional<Error> Ebs221StudyConfig::check() const {
-  const std::pair<const char*, const Ebs221Part*> parts[] = {
-      {"part_d", &part_d}, {"part_e", &part_e}, {"part_f", &part_f}};
+  const std::pair<const char*, const Ebs221Part*> parts[] = {{"part_d", &part_d},
+                                                             {"part_e", &part_e},
+                                                             {"part_f", &part_f},
+                                                             {"part_fishtail", &part_fishtail}};
   for (const auto& [name, part] : parts) {
     std::vector<int> sorted = part->rows;
     std::sort(sorted.begin(), sorted.end());

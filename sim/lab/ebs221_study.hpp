@@ -48,6 +48,7 @@ struct Ebs221StudyConfig {
   Ebs221Part part_d{{1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, 60.0, 60.0, 1.0, 0.8};
   Ebs221Part part_e{{1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, 60.0, 30.0, 4.0, 2.0};
   Ebs221Part part_f{{1, 6, 7, 5, 10, 4, 9, 3, 8, 2}, 30.0, 30.0, 1.0, 0.2};
+  Ebs221Part part_fishtail{{1, 3, 5, 7, 9, 10, 8, 6, 4, 2}, 60.0, 60.0, 1.0, 0.5};
   PurePursuitConfig tracker;
 
   std::optional<Error> check() const;
@@ -68,19 +69,22 @@ struct Ebs221StudyConfig {
     v("acceleration_mps2", acceleration_mps2, config::kPositive,
       "Of the vehicle that ours drives; the seed's is always at speed [m/s2]");
     v("field", field, "The field of (002) part A");
-    v("part_d", part_d, "Row order and turns for its limit");
+    v("part_d", part_d, "Row order and turns for 60 degrees");
     v("part_e", part_e, "Part D's drive with less steering than it was planned for");
-    v("part_f", part_f, "Row order and turns for its limit");
+    v("part_f", part_f, "Row order and turns for 30 degrees");
+    v("part_fishtail", part_fishtail, "Part D's order with fishtails where (002) has them");
     v("tracker", tracker, "Ours");
   }
 };
 
 /// Cells `tour/seed/60deg`, `tour/seed/30deg`, `tour/true/60deg`, `tour/true/30deg`: cost_m,
-/// planning_s, optimal. Cells `track/seed/D`, `E`, `F`, `E/perturbed`, `track/ours/D`, `F`,
-/// `fishtail`, `fishtail_30deg`: overall_rms_m, row_rms_m, turn_rms_m, max_m (the seed's: by its
-/// own rule; ours: to the exact path), the same with `true_` (to the exact path) and `seed_` (by
-/// the seed's rule, where the route is one of Dubins turns), wrong_gear_count, mean_speed_mps,
-/// completed_ratio. All but planning_s is deterministic.
+/// planning_s, optimal. Cells `track/seed/D`, `E`, `F`, `fishtail`, `E/perturbed`, `track/ours/D`,
+/// `F`, `fishtail`, `fishtail_30deg`: overall_rms_m, row_rms_m, turn_rms_m, max_m (the seed's: by
+/// its own rule; ours: to the exact path), the same with `true_` (to the exact path; not of the
+/// seed's fishtails, which follow none) and `seed_` (by the seed's rule; not of our fishtails,
+/// whose waypoints it would not know), wrong_gear_count, mean_speed_mps, guided_count,
+/// completed_ratio; `track/seed/fishtail` also forward_rms_m, reverse_rms_m, reverse_count. All but
+/// planning_s is deterministic.
 Result<StudyResult> run_ebs221_study(const Ebs221StudyConfig& config);
 
 }  // namespace headland

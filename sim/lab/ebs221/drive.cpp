@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "core/geometry/polygon.hpp"
+#include "sim/lab/ebs221/seed_fishtail.hpp"
 
 namespace headland {
 namespace {
@@ -15,13 +17,39 @@ constexpr int kLeastPeriods = 1000;  // of the seed's loop
 constexpr double kWindow = 3.0;      // of the projection, around the tracker's progress [m]
 constexpr double kStanding = 1e-3;   // [m/s]
 
-void euler(const SeedPlant& plant, double wheelbase, double steering, Pose2& pose) {
+void euler(const SeedPlant& plant, double wheelbase, double speed, double steering, Pose2& pose) {
   const double dt = plant.period_s / plant.euler_steps;
   for (int i = 0; i < plant.euler_steps; ++i) {
-    pose.x += dt * plant.speed_mps * std::cos(pose.yaw);
-    pose.y += dt * plant.speed_mps * std::sin(pose.yaw);
-    pose.yaw += dt * plant.speed_mps * std::tan(steering) / wheelbase;
+    pose.x += dt * speed * std::cos(pose.yaw);
+    pose.y += dt * speed * std::sin(pose.yaw);
+    pose.yaw += dt * speed * std::tan(steering) / wheelbase;
   }
+}
+
+struct SeedCommand {
+  double steering = 0.0;  // [rad]
+  Gear gear = Gear::kForward;
+};
+
+FieldDrive seed_loop(const SeedPlant& plant, const SeedPurePursuitConfig& config,
+                     const SeedRoute& route, const Pose2& start,
+                     const std::function<SeedCommand(const Pose2&)>& controller) {
+  FieldDrive drive;
+  Pose2 pose = start;
+  const int most = static_cast<int>(std::lround(plant.max_time_s / plant.period_s));
+  for (int k = 1; k <= most; ++k) {
+    const SeedCommand command = controller(pose);
+    drive.positions.push_back(pose.position());
+    drive.steering.push_back(command.steering);
+    drive.gears.push_back(command.gear);
+    euler(plant, config.wheelbase_m, sign(command.gear) * plant.speed_mps, command.steering, pose);
+    const double to_end = (pose.position() - route.points.back()).norm();
+    drive.completed = to_end < kEndRadius && k >= kLeastPeriods;
+    if (drive.completed) break;
+  }
+  drive.duration = static_cast<double>(drive.positions.size()) * plant.period_s;
+  drive.distance = drive.duration * plant.speed_mps;
+  return drive;
 }
 
 // Which stretch of one gear the vehicle is on. A stop at a cusp belongs to the stretch before it
@@ -64,23 +92,25 @@ class GearWatch {
 FieldDrive drive_seed_field(const SeedPlant& plant, const SeedPurePursuitConfig& config,
                             const SeedRoute& route, const Path& path, const Pose2& start) {
   SeedPurePursuit controller(config, route);
-  FieldDrive drive;
-  Pose2 pose = start;
-  const int most = static_cast<int>(std::lround(plant.max_time_s / plant.period_s));
-  for (int k = 1; k <= most; ++k) {
+  int guided = 0;
+  FieldDrive drive = seed_loop(plant, config, route, start, [&](const Pose2& pose) {
     const SeedPurePursuit::Output out = controller.step(pose);
-    drive.positions.push_back(pose.position());
-    drive.steering.push_back(out.steering);
-    drive.guided_count += out.guided ? 1 : 0;
-    euler(plant, config.wheelbase_m, out.steering, pose);
-    const double to_end = (pose.position() - route.points.back()).norm();
-    drive.completed = to_end < kEndRadius && k >= kLeastPeriods;
-    if (drive.completed) break;
-  }
-  drive.duration = static_cast<double>(drive.positions.size()) * plant.period_s;
-  drive.distance = drive.duration * plant.speed_mps;
+    guided += out.guided ? 1 : 0;
+    return SeedCommand{out.steering, Gear::kForward};
+  });
+  drive.guided_count = guided;
   drive.errors = errors_from_path(drive.positions, path);
   return drive;
+}
+
+FieldDrive drive_seed_fishtail(const SeedPlant& plant, const SeedPurePursuitConfig& config,
+                               const SeedRoute& route, const std::vector<bool>& fishtails,
+                               const Pose2& start) {
+  SeedFishtailPursuit controller(config, route, fishtails);
+  return seed_loop(plant, config, route, start, [&](const Pose2& pose) {
+    const SeedFishtailPursuit::Output out = controller.step(pose);
+    return SeedCommand{out.steering, out.reverse ? Gear::kReverse : Gear::kForward};
+  });
 }
 
 FieldDrive drive_our_field(Tracker& tracker, const Vehicle& vehicle, const Reference& reference,
@@ -106,6 +136,7 @@ FieldDrive drive_our_field(Tracker& tracker, const Vehicle& vehicle, const Refer
     drive.positions.push_back(before);
     drive.errors.push_back(watch.error(before, out.s));
     drive.steering.push_back(state.steering);
+    drive.gears.push_back(state.speed < 0.0 ? Gear::kReverse : Gear::kForward);
   }
   return drive;
 }

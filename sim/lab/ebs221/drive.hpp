@@ -15,7 +15,8 @@ namespace headland {
 struct FieldDrive {
   std::vector<Point2> positions;  ///< when each command was computed [m]
   std::vector<double> steering;   ///< the angle driven with until the next one [rad]
-  std::vector<PathError> errors;  ///< to the exact path
+  std::vector<Gear> gears;        ///< driven in until the next one
+  std::vector<PathError> errors;  ///< to the exact path; empty of the seed's fishtail run
   double duration = 0.0;          ///< [s]
   double distance = 0.0;          ///< driven, in both gears [m]
   int wrong_gear_count = 0;       ///< periods in which the vehicle moved against the path's gear
@@ -36,6 +37,11 @@ struct SeedPlant {
 /// seed_errors().
 FieldDrive drive_seed_field(const SeedPlant& plant, const SeedPurePursuitConfig& config,
                             const SeedRoute& route, const Path& path, const Pose2& start);
+
+/// The same for its fishtail run, whose path leads nowhere that an exact one could follow.
+FieldDrive drive_seed_fishtail(const SeedPlant& plant, const SeedPurePursuitConfig& config,
+                               const SeedRoute& route, const std::vector<bool>& fishtails,
+                               const Pose2& start);
 
 /// Drives a tracker of ours on the vehicle of core/model, which has a steering rate, from
 /// standstill at the path's start to standstill at its end. Periods at a standstill (gear changes)

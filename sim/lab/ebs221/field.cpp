@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/ebs221/field.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometry/dubins.hpp"
@@ -14,7 +15,7 @@ void add_row_points(const FieldLink& link, std::vector<Point2>& points) {
   const Point2 from = link.from.position();
   const Point2 along = link.to.position() - from;
   const int count = static_cast<int>(std::ceil(along.norm() / kSeedRowSpacing));
-  for (int i = 1; i < count; ++i) points.push_back(from + along * (i / (count - 1.0)));
+  for (int i = 1; i < count; ++i) points.push_back(from + i * along / (count - 1.0));
 }
 
 // Points of a turn every kSeedTurnSpacing from its start, which is left out.
@@ -95,12 +96,45 @@ FieldPath field_path(const std::vector<FieldLink>& links, double radius, TurnSha
   return result;
 }
 
-SeedRoute seed_route(const std::vector<FieldLink>& links, double radius, double middle_y) {
+bool seed_fishtails(const FieldLink& link, double radius) {
+  return link.kind == LegKind::kTurn && std::abs(link.to.x - link.from.x) < 2.0 * radius;
+}
+
+std::vector<Point2> seed_fishtail_points(const FieldLink& link, double radius) {
+  const double side = link.from.yaw < 0.0 ? 1.0 : -1.0;
+  const int steps = static_cast<int>(std::ceil(0.5 * kPi * radius / kSeedTurnSpacing));
+  const double bend = kSeedTurnSpacing / radius;
+  const struct {
+    double gear;
+    double turn;
+  } arcs[] = {{1.0, side}, {-1.0, -side}, {-1.0, side}, {1.0, -side}};
+  std::vector<Point2> points;
+  Pose2 at = link.from;
+  for (const auto& arc : arcs) {
+    for (int i = 0; i < steps; ++i) {
+      at.yaw += arc.turn * bend;
+      const double middle = at.yaw - 0.5 * arc.turn * bend;
+      at.x += arc.gear * kSeedTurnSpacing * std::cos(middle);
+      at.y += arc.gear * kSeedTurnSpacing * std::sin(middle);
+      points.push_back(at.position());
+    }
+  }
+  const auto most = static_cast<std::size_t>(std::ceil(2.0 * kPi * radius / kSeedTurnSpacing));
+  points.resize(std::min(points.size(), most));
+  points.back() = link.to.position();
+  return points;
+}
+
+SeedRoute seed_route(const std::vector<FieldLink>& links, double radius, double middle_y,
+                     TurnShape shape) {
   SeedRoute route;
   for (const FieldLink& link : links) {
     const bool turn = link.kind != LegKind::kRow;
     const std::size_t first = route.points.size();
-    if (turn) {
+    if (shape == TurnShape::kFishtail && seed_fishtails(link, radius)) {
+      const std::vector<Point2> points = seed_fishtail_points(link, radius);
+      route.points.insert(route.points.end(), points.begin(), points.end());
+    } else if (turn) {
       add_turn_points(link, radius, route.points);
     } else {
       add_row_points(link, route.points);

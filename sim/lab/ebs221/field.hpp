@@ -65,8 +65,17 @@ inline constexpr double kSeedRowSpacing = 0.5;    // [m]; a row has ceil(length 
 inline constexpr double kSeedTurnSpacing = 0.25;  // [m]
 
 /// The same drive as the waypoints of (002) part C: the first point of each link left out, the
-/// ends of curves left out too where the spacing does not meet them.
-SeedRoute seed_route(const std::vector<FieldLink>& links, double radius, double middle_y);
+/// ends of curves left out too where the spacing does not meet them. With kFishtail, turns between
+/// rows nearer than 2 R get the points of (002)'s fishtail, see seed_fishtail_points().
+SeedRoute seed_route(const std::vector<FieldLink>& links, double radius, double middle_y,
+                     TurnShape shape = TurnShape::kDubins);
+
+/// True for a turn between rows nearer than 2 R, which (002) drives as a fishtail.
+bool seed_fishtails(const FieldLink& link, double radius);
+
+/// The points of (002)'s fishtail, the first left out: its two quarter circles each run out and
+/// back on themselves, so that it only gets to the next row by its last point.
+std::vector<Point2> seed_fishtail_points(const FieldLink& link, double radius);
 
 /// Kinds of a route's links as (002) counts them: the ways from and to the depot are turns.
 std::vector<LegKind> seed_kinds(const SeedRoute& route);

@@ -69,7 +69,7 @@ void add_tour_table(StudyResult& result) {
 void add_drive_plots(const std::string& cell, const FieldDrive& drive, const Path& path,
                      StudyResult& result) {
   Plot way{cell + ": the drive", "x [m]", "y [m]", {{"path"}, {"driven"}}};
-  Plot error{cell + ": distance to the exact path", "driven [m]", "error [m]", {{cell}}};
+  Plot error{cell + ": distance to the path", "driven [m]", "error [m]", {{cell}}};
   Plot steering{cell + ": steering", "driven [m]", "steering [deg]", {{cell}}};
   for (const PathSample& sample : path.sample(0.5)) {
     way.series[0].x.push_back(sample.pose.x);
