@@ -25,7 +25,7 @@ struct SteeringPlanConfig {
   /// the path by no more than this [m] ...
   double step_error_m = 0.02;
   /// ... but not below this share of the leg's speed.
-  double least_speed_ratio = 0.5;
+  double least_speed_ratio = 0.2;
 
   template <class V>
   void visit(V& v) {
