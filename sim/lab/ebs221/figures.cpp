@@ -12,8 +12,8 @@ std::string shown(const StudyResult& result, const std::string& cell, const std:
   const StudyCell* found = result.find(cell);
   const Statistic* value = found != nullptr ? found->find(metric) : nullptr;
   if (value == nullptr) return "-";
-  if (!value->std) return fmt::format("{:.4f}", value->mean);
-  return fmt::format("{:.4f} +- {:.4f}", value->mean, *value->std);
+  if (!value->std) return fmt::format("{:.5f}", value->mean);
+  return fmt::format("{:.5f} +- {:.5f}", value->mean, *value->std);
 }
 
 // overall / rows / turns
