@@ -25,8 +25,8 @@ struct SensorConfig {
 /// A vehicle and its battery in lock-step simulation on flat ground. Deterministic for a seed.
 class SimulatedVehicle {
  public:
-  SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, double soc, const SensorConfig& sensors,
-                   std::uint64_t seed);
+  SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, double soc,
+                   const SensorConfig& sensors, std::uint64_t seed);
 
   /// Drives `dt` [s] under a held command; `kind` says whether the implement is at work.
   void step(const Command& command, LegKind kind, double dt);

@@ -107,8 +107,8 @@ PathSample Path::at(double s) const {
   HEADLAND_CHECK(!empty(), "a sample of an empty path");
   const double clamped = std::clamp(s, 0.0, length());
   const auto past = std::upper_bound(ends_.begin(), ends_.end(), clamped);
-  const std::size_t i = past == ends_.end() ? ends_.size() - 1
-                                            : static_cast<std::size_t>(past - ends_.begin());
+  const std::size_t i =
+      past == ends_.end() ? ends_.size() - 1 : static_cast<std::size_t>(past - ends_.begin());
   const double begin_s = i == 0 ? 0.0 : ends_[i - 1];
   const auto next_segment = std::upper_bound(
       segments_.begin(), segments_.end(), clamped,
@@ -116,8 +116,8 @@ PathSample Path::at(double s) const {
   const int segment = std::min(static_cast<int>(next_segment - segments_.begin()),
                                static_cast<int>(segments_.size()) - 1);
   const PathPiece& piece = pieces_[i];
-  return {pose_on(piece, clamped - begin_s), clamped, piece.curvature, piece.gear, segment,
-          piece.leg};
+  return {
+      pose_on(piece, clamped - begin_s), clamped, piece.curvature, piece.gear, segment, piece.leg};
 }
 
 std::vector<PathSample> Path::sample(double spacing) const {
@@ -143,9 +143,8 @@ Projection Path::project(const Point2& p_map, double from_s, double to_s) const 
   for (auto i = static_cast<std::size_t>(first - ends_.begin()); i < pieces_.size(); ++i) {
     const double begin_s = i == 0 ? 0.0 : ends_[i - 1];
     if (begin_s > high) break;
-    Projection candidate =
-        project_piece(pieces_[i], p_map, std::max(low - begin_s, 0.0),
-                      std::min(high - begin_s, pieces_[i].length));
+    Projection candidate = project_piece(pieces_[i], p_map, std::max(low - begin_s, 0.0),
+                                         std::min(high - begin_s, pieces_[i].length));
     candidate.s = std::clamp(candidate.s + begin_s, low, high);
     if (!found || candidate.distance < best.distance) best = candidate;
     found = true;

@@ -15,16 +15,16 @@ namespace headland {
 /// One item of a vehicle's tour.
 struct PlanLeg {
   LegKind kind = LegKind::kRow;
-  std::string id;      ///< row, charger, or what is joined
-  DriveCost cost;      ///< a charge has only a duration
+  std::string id;  ///< row, charger, or what is joined
+  DriveCost cost;  ///< a charge has only a duration
   double soc_end = 1.0;
   int cusps = 0;
 };
 
 /// Driven without a stop but for gear changes; ends at a charger or at the finish.
 struct PlanStage {
-  Path path;           ///< leg numbers index VehiclePlan::legs
-  int charge_leg = -1; ///< the charge that follows; -1: none
+  Path path;            ///< leg numbers index VehiclePlan::legs
+  int charge_leg = -1;  ///< the charge that follows; -1: none
 };
 
 struct VehiclePlan {
@@ -58,8 +58,8 @@ struct MissionPlan {
   }
 };
 
-/// Plans a mission: verified ways between all row ends and chargers, the cheapest order of rows, the
-/// cheapest recharge stops for that order (and for its reverse; the cheaper one wins), and the
+/// Plans a mission: verified ways between all row ends and chargers, the cheapest order of rows,
+/// the cheapest recharge stops for that order (and for its reverse; the cheaper one wins), and the
 /// path. Deterministic for the configuration's seed. Errors: kTurnDoesNotFit, kNoPath,
 /// kEnergyInfeasible, each naming the row.
 Result<MissionPlan> plan_mission(const Mission& mission);

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-
 namespace headland {
 namespace {
 
@@ -15,6 +14,8 @@ constexpr double kProgressPeriod = 1.0;  // simulated [s]
 
 // Window of the path in which the true position is projected, around the tracker's progress [m].
 constexpr double kWindow = 3.0;
+// Nearer to a cusp than this, the vehicle is on it [m].
+constexpr double kOnCusp = 1e-6;
 
 class Driver {
  public:
@@ -81,8 +82,9 @@ class Driver {
   // (the path runs back on itself there), and appends a trace row.
   void record(const Path& path, const TrackOutput& output) {
     const VehicleState& truth = vehicle_.truth();
-    const PathSegment& segment =
-        path.segments()[static_cast<std::size_t>(path.at(output.s).segment)];
+    // On a cusp the tracker is still on the segment that ends there.
+    const double s = std::max(0.0, output.s - kOnCusp);
+    const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(s).segment)];
     const Projection projection =
         path.project(truth.pose.position(), std::max(segment.begin_s, output.s - kWindow),
                      std::min(segment.end_s, output.s + kWindow));

@@ -22,8 +22,8 @@ struct SiteIndex {
 
 /// Lower bound [objective's unit] on what the charge stops add to any order of rows that costs at
 /// least `tour_bound`: the fewest stops the battery allows, each at the smallest detour there is.
-double forced_detours(const Mission& mission, const Transitions& transitions, const SiteIndex& sites,
-                      double tour_bound);
+double forced_detours(const Mission& mission, const Transitions& transitions,
+                      const SiteIndex& sites, double tour_bound);
 
 /// Legs and paths of the tour.
 VehiclePlan build_vehicle_plan(const Mission& mission, const Transitions& transitions,

@@ -36,7 +36,8 @@ TEST(DriveCost, GearChangesCostTimeAndBasePower) {
 TEST(DriveCost, NothingDrivenCostsNothingAndMoreCostsMore) {
   for (const LegKind kind : {LegKind::kRow, LegKind::kTurn, LegKind::kTransit}) {
     EXPECT_EQ(drive_cost(vehicle(), kind, 0.0).energy_j, 0.0);
-    EXPECT_GT(drive_cost(vehicle(), kind, 11.0).energy_j, drive_cost(vehicle(), kind, 10.0).energy_j);
+    EXPECT_GT(drive_cost(vehicle(), kind, 11.0).energy_j,
+              drive_cost(vehicle(), kind, 10.0).energy_j);
   }
 }
 

@@ -15,8 +15,8 @@ Vehicle tractor() {
   return vehicle;
 }
 
-VehicleState drive(const Vehicle& vehicle, VehicleState state, const Command& command, double seconds,
-                   double dt = 0.01) {
+VehicleState drive(const Vehicle& vehicle, VehicleState state, const Command& command,
+                   double seconds, double dt = 0.01) {
   for (int i = 0; i < static_cast<int>(std::lround(seconds / dt)); ++i) {
     state = step_vehicle(vehicle, state, command, dt);
   }
@@ -29,7 +29,8 @@ TEST(Ackermann, ClosesACircleOfTheSteeringsRadius) {
   state.speed = 1.0;
   state.steering = 0.4;
   const double radius = vehicle.wheelbase_m / std::tan(0.4);
-  const VehicleState half = drive(vehicle, state, {1.0, 0.4, 0.0}, kPi * radius, kPi * radius / 1000.0);
+  const VehicleState half =
+      drive(vehicle, state, {1.0, 0.4, 0.0}, kPi * radius, kPi * radius / 1000.0);
   EXPECT_NEAR(half.pose.x, 0.0, 1e-9);
   EXPECT_NEAR(half.pose.y, 2.0 * radius, 1e-9);
 }

@@ -117,7 +117,7 @@ TEST(TransitionsSlow, TheRealVineyard) {
     std::printf("vineyard, %s: %d sites in %.2f s\n", vehicle.name.c_str(), built.ways.sites(),
                 built.seconds);
     EXPECT_LT(built.seconds, 15.0);  // ten times what it takes
-    expect_joined_and_inside(built.ways, farm, vehicle, 101);
+    expect_joined_and_inside(built.ways, farm, vehicle, 409);
   }
 }
 
@@ -129,7 +129,7 @@ TEST(TransitionsSlow, AnEstateOfAThousandRows) {
     std::printf("estate, %s: %d sites in %.2f s\n", vehicle.name.c_str(), built.ways.sites(),
                 built.seconds);
     EXPECT_LT(built.seconds, 120.0);
-    expect_joined_and_inside(built.ways, farm, vehicle, 20011);
+    expect_joined_and_inside(built.ways, farm, vehicle, 80021);
   }
 }
 

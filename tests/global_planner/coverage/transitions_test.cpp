@@ -210,7 +210,8 @@ TEST(Transitions, ATooNarrowHeadlandIsAnErrorThatSaysWhere) {
   const Result<Transitions> result = Transitions::build(farm, farm.all_rows(), {}, vehicle);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::kTurnDoesNotFit);
-  for (const char* part : {"row p/p.1, south end", "(1.3, 0.0)", "3.20 m", "3.8 x 1.5 m", "3.5 m"}) {
+  for (const char* part :
+       {"row p/p.1, south end", "(1.3, 0.0)", "3.20 m", "3.8 x 1.5 m", "3.5 m"}) {
     EXPECT_NE(result.error().what.find(part), std::string::npos) << result.error().what;
   }
   EXPECT_NE(result.error().remedy.find("allow reversing"), std::string::npos);

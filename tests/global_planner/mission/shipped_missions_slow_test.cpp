@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+#include <map>
+#include <set>
+#include <string>
+
+#include "core/config/yaml.hpp"
+#include "global_planner/mission/mission_plan.hpp"
+#include "tests/support/outline_checker.hpp"
+
+namespace headland {
+namespace {
+
+const std::filesystem::path kMissions =
+    std::filesystem::path(HEADLAND_SOURCE_DIR) / "config/missions";
+
+// The mission's own keys; the simulation's are not the planner's business.
+struct MissionFile {
+  MissionConfig mission;
+  template <class V>
+  void visit(V& v) {
+    mission.visit(v);
+  }
+};
+
+Path path_of_leg(const VehiclePlan& vehicle, int leg) {
+  Path path;
+  for (const PlanStage& stage : vehicle.stages) {
+    for (const PathPiece& piece : stage.path.pieces()) {
+      if (piece.leg == leg) path.append(piece);
+    }
+  }
+  return path;
+}
+
+// Every leg of the plan, judged by a checker that shares nothing with the planner but the farm.
+void expect_inside(const Mission& mission, const MissionPlan& plan) {
+  const Farm& farm = mission.farm;
+  const VehiclePlan& vehicle = plan.vehicles.front();
+  std::vector<Row> rows;
+  std::map<std::string, int> number;
+  double spacing = farm.row_parcels.front().row_spacing_m;
+  for (const RowRef ref : farm.all_rows()) {
+    number[farm.row_name(ref)] = static_cast<int>(rows.size());
+    rows.push_back(farm.row(ref));
+    spacing = std::min(spacing, farm.row_parcels[static_cast<std::size_t>(ref.parcel)].row_spacing_m);
+  }
+  test::OutlineChecker checker(farm, rows, spacing - 0.02, vehicle.vehicle.footprint);
+  const int legs = static_cast<int>(vehicle.legs.size());
+  for (int leg = 0; leg < legs; ++leg) {
+    if (vehicle.legs[static_cast<std::size_t>(leg)].kind == LegKind::kCharge) continue;
+    std::set<int> own;
+    for (int near = std::max(0, leg - 1); near <= std::min(legs - 1, leg + 1); ++near) {
+      const PlanLeg& other = vehicle.legs[static_cast<std::size_t>(near)];
+      if (other.kind == LegKind::kRow) own.insert(number.at(other.id));
+    }
+    EXPECT_EQ(checker.complaint(path_of_leg(vehicle, leg), own), "")
+        << vehicle.legs[static_cast<std::size_t>(leg)].id;
+  }
+}
+
+class ShippedMission : public testing::TestWithParam<const char*> {};
+
+TEST_P(ShippedMission, PlansWithinTheGapAndNeverLeavesHeadlandOrRoad) {
+  const auto file = config::load<MissionFile>(kMissions / (std::string(GetParam()) + ".yaml"));
+  ASSERT_TRUE(file) << to_string(file.error());
+  for (const std::string& farm : file->mission.farm) {
+    if (!std::filesystem::exists(resolve_path(farm, kMissions))) GTEST_SKIP() << "no " << farm;
+  }
+  const auto mission = load_mission(file->mission, kMissions);
+  ASSERT_TRUE(mission) << to_string(mission.error());
+  const auto plan = plan_mission(*mission);
+  ASSERT_TRUE(plan) << to_string(plan.error());
+  EXPECT_LE(plan->gap_ratio(), 0.03);
+  const VehiclePlan& vehicle = plan->vehicles.front();
+  EXPECT_GE(vehicle.min_soc, vehicle.vehicle.battery.reserve_soc - 1e-9);
+  expect_inside(*mission, *plan);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedMission,
+                         testing::Values("girona_orchard", "kiato_vineyard", "ebs221_field",
+                                         "polito_orchard", "jojos_vineyard",
+                                         "jojos_vineyard_carob", "estate_1000_rows"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace headland
