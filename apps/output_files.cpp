@@ -31,4 +31,9 @@ Result<void> write_files(const std::filesystem::path& directory,
   return {};
 }
 
+std::string report_line(const std::filesystem::path& directory) {
+  return "report     " +
+         (std::filesystem::absolute(directory) / "report.html").lexically_normal().string() + "\n";
+}
+
 }  // namespace headland::apps

@@ -14,4 +14,7 @@ namespace headland::apps {
 Result<void> write_files(const std::filesystem::path& directory,
                          const std::map<std::string, std::string>& files);
 
+/// The line that ends a command's output: where its report is.
+std::string report_line(const std::filesystem::path& directory);
+
 }  // namespace headland::apps

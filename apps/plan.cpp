@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/output_files.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
 #include "apps/report_content.hpp"
@@ -20,8 +21,7 @@ int plan_command(const CommonOptions& options) {
   if (options.json) {
     fmt::print("{}", summary);
   } else {
-    fmt::print("{}report     {}/report.html\n", plan_text(planned->plan, planned->planning_s),
-               options.out);
+    fmt::print("{}{}", plan_text(planned->plan, planned->planning_s), report_line(options.out));
   }
   return 0;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/output_files.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
 #include "apps/recording.hpp"
@@ -55,8 +56,8 @@ int run_command(const CommonOptions& options, double realtime) {
   if (options.json) {
     fmt::print("{}", metrics);
   } else {
-    fmt::print("{}\n{}report     {}/report.html\n", plan_text(planned->plan, planned->planning_s),
-               run_text(run, real_time_factor), options.out);
+    fmt::print("{}\n{}{}", plan_text(planned->plan, planned->planning_s),
+               run_text(run, real_time_factor), report_line(options.out));
   }
   return run.metrics.completed ? 0 : 3;
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/output_files.hpp"
 #include "apps/report_content.hpp"
 #include "apps/study_output.hpp"
 #include "sim/lab/ebs221_study.hpp"
@@ -59,7 +60,7 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   if (options.json) {
     fmt::print("{}", results);
   } else {
-    fmt::print("{}report     {}/report.html\n", cells_text(finished->result), options.out);
+    fmt::print("{}{}", cells_text(finished->result), report_line(options.out));
   }
   return 0;
 }
