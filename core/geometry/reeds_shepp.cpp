@@ -99,7 +99,9 @@ double wrap(double angle) {
 class Search {
  public:
   explicit Search(const UnitGoal& goal)
-      : abs_phi_(std::abs(goal.phi)), quarter_rest_(std::abs(abs_phi_ - kQuarter)) {
+      : tolerance_(goal.tolerance),
+        abs_phi_(std::abs(goal.phi)),
+        quarter_rest_(std::abs(abs_phi_ - kQuarter)) {
     const double s = goal.sin_phi;
     const double c = goal.cos_phi;
     // The goal's view of the start, for words driven backwards.
@@ -119,6 +121,7 @@ class Search {
   }
 
   Solution shortest() {
+    for (int k = 0; k < 4; k += 2) limits(sides_[k / 2], images_[k]);
     for (int k = 0; k < 4; ++k) {
       const Side& side = sides_[k / 2];
       const Image& image = images_[k];
@@ -166,6 +169,16 @@ class Search {
 
   void offer(const Image& i, Word word, double t, double u, double v, double length) {
     if (length < best_.length) best_ = {length, word, i.flip, i.mirror, t, u, v};
+  }
+
+  // One arc, and two arcs in either gear, where the circles coincide or touch within the tolerance:
+  // the last digits of a goal must not make a manoeuvre of cusps out of them.
+  void limits(const Side& side, const Image& i) {
+    if (side.same.rho <= tolerance_) offer(i, Word::kLsl, 0.0, 0.0, i.phi, abs_phi_);
+    if (std::abs(side.other.rho - 2.0) > tolerance_) return;
+    const double t = std::atan2(side.other.a, -side.other.b);
+    const double v = wrap(t - i.phi);
+    offer(i, Word::kLsr, t, 0.0, v, std::abs(t) + std::abs(v));
   }
 
   // 8.1, L+S+L+: w = u e^(i t), t + v = phi.
@@ -272,6 +285,7 @@ class Search {
     if (t >= -kEps && v >= -kEps) offer(i, Word::kLrslr, t, u, v, t + kPi - u + v);
   }
 
+  double tolerance_;     // by which an answer may miss the goal
   double abs_phi_;       // bounds |t| + |v| of words whose other turns cancel
   double quarter_rest_;  // bounds it in words with one quarter turn
   Side sides_[2];        // the problem and its mirror image

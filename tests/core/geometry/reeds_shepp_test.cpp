@@ -99,6 +99,31 @@ TEST(ReedsShepp, GoalsATrifleOffAWordsBorderAreReachedAllTheSame) {
   }
 }
 
+// Two poses of which only the last digits differ, as at a projected map's large coordinates, are
+// not a manoeuvre of cusps apart where one arc or two do.
+TEST(ReedsShepp, IsNoLongerThanDubinsForGoalsATrifleOffALattice) {
+  RandomStream random(7, "reeds_shepp");
+  for (int i = 0; i < 100000; ++i) {
+    const double off = std::pow(10.0, random.uniform(-16.0, -8.0));
+    const Pose2 from{0.0, 0.0, 0.25 * kPi * random.index(8)};
+    const Pose2 to{0.5 * (random.index(5) - 2) + random.uniform(-off, off),
+                   0.5 * (random.index(5) - 2) + random.uniform(-off, off),
+                   0.25 * kPi * random.index(8) + random.uniform(-off, off)};
+    ASSERT_LE(reeds_shepp_length(from, to, 1.0), dubins_length(from, to, 1.0) + 1e-9)
+        << i << " off by " << off;
+  }
+}
+
+TEST(ReedsShepp, IdenticalPosesAreNothingApartAtLargeCoordinates) {
+  RandomStream random(8, "reeds_shepp");
+  for (int i = 0; i < 1000; ++i) {
+    const Pose2 from{random.uniform(499000.0, 501000.0), 4.6e6, random.uniform(-kPi, kPi)};
+    const Pose2 to{from.x + random.uniform(-2e-10, 2e-10), from.y, from.yaw + 4.0 * kPi};
+    EXPECT_LE(reeds_shepp_length(from, to, 3.0), 1e-9) << i;
+    EXPECT_EQ(shortest_reeds_shepp(from, to, 3.0).cusps(), 0) << i;
+  }
+}
+
 // A piece that is rounding alone would be a change of gear to whoever drives the curve.
 TEST(ReedsShepp, RoundingPutsNoCuspIntoAForwardCurve) {
   RandomStream random(5, "reeds_shepp");
