@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedMission,
                          testing::Values("girona_orchard", "kiato_vineyard", "ebs221_field",
                                          "polito_orchard", "jojos_vineyard",
                                          "jojos_vineyard_carob", "estate_1000_rows"),
-                         [](const auto& info) { return std::string(info.param); });
+                         [](const auto& mission) { return std::string(mission.param); });
 
 }  // namespace
 }  // namespace headland
