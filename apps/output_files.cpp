@@ -1,32 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/output_files.hpp"
 
+#include <array>
 #include <fstream>
+#include <string_view>
 
 namespace headland::apps {
 
-Result<void> write_files(const std::filesystem::path& directory,
-                         const std::map<std::string, std::string>& files) {
-  const auto failed = [](const std::filesystem::path& path, const std::string& why) {
-    return fail(ErrorCode::kFileNotWritable, "cannot be written: " + why,
-                "choose another directory with --out", {path.string(), 0, ""});
-  };
+namespace {
+
+// What any command may write; those of an earlier command in the same directory would mislead.
+constexpr std::array<std::string_view, 9> kOutputs = {
+    "summary.json", "plan.geojson", "metrics.json", "trace.csv",  "run.mcap",
+    "results.json", "episodes.csv", "report.json",  "report.html"};
+
+tl::unexpected<Error> cannot_write(const std::filesystem::path& path, const std::string& why) {
+  return fail(ErrorCode::kFileNotWritable, "cannot be written: " + why,
+              "choose another directory with --out", {path.string(), 0, ""});
+}
+
+}  // namespace
+
+Result<void> prepare_output(const std::filesystem::path& directory) {
   std::error_code code;
   std::filesystem::create_directories(directory, code);
-  if (code) return failed(directory, code.message());
+  if (code) return cannot_write(directory, code.message());
+  const auto probe = directory / ".headland.part";
+  std::ofstream stream(probe);
+  stream << "x";
+  stream.close();
+  const bool written = static_cast<bool>(stream);
+  std::filesystem::remove(probe, code);
+  if (!written) return cannot_write(directory, "no file can be made there");
+  for (const std::string_view name : kOutputs) {
+    if (std::filesystem::is_directory(directory / name, code)) {
+      return cannot_write(directory / name, "it is a directory");
+    }
+  }
+  return {};
+}
+
+Result<void> write_files(const std::filesystem::path& directory,
+                         const std::map<std::string, std::string>& files) {
+  if (auto ready = prepare_output(directory); !ready) return ready;
+  std::error_code code;
   for (const auto& [name, content] : files) {
-    const auto temporary = directory / (name + ".part");
-    std::ofstream stream(temporary, std::ios::binary);
+    std::ofstream stream(directory / (name + ".part"), std::ios::binary);
     stream << content;
     stream.close();
-    if (!stream) {
-      std::filesystem::remove(temporary, code);
-      return failed(temporary, "write error");
+    if (stream) continue;
+    for (const auto& [part, unused] : files) {
+      std::filesystem::remove(directory / (part + ".part"), code);
     }
+    return cannot_write(directory / name, "no space left, or the file system failed");
+  }
+  for (const std::string_view name : kOutputs) {
+    if (files.count(std::string(name)) == 0) std::filesystem::remove(directory / name, code);
   }
   for (const auto& [name, content] : files) {
     std::filesystem::rename(directory / (name + ".part"), directory / name, code);
-    if (code) return failed(directory / name, code.message());
+    if (code) return cannot_write(directory / name, code.message());
   }
   return {};
 }

@@ -9,8 +9,12 @@
 
 namespace headland::apps {
 
+/// Makes the directory and checks that files can be written there, before hours of work are.
+Result<void> prepare_output(const std::filesystem::path& directory);
+
 /// Writes all files into a directory (created if absent), each under a temporary name first: an
-/// interrupted command leaves no half-written file. Name -> content.
+/// interrupted command leaves no half-written file. Outputs of earlier
+/// commands that this one does not write are removed. Name -> content.
 Result<void> write_files(const std::filesystem::path& directory,
                          const std::map<std::string, std::string>& files);
 

@@ -10,6 +10,9 @@
 namespace headland::apps {
 
 int plan_command(const CommonOptions& options) {
+  if (auto ready = prepare_output(options.out); !ready) {
+    return report_error(ready.error(), options);
+  }
   const auto planned = plan_from_file(options);
   if (!planned) return report_error(planned.error(), options);
   const std::string summary = summary_json(planned->plan, planned->planning_s, planned->stamp);

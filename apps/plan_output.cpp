@@ -13,15 +13,17 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kSampleSpacing = 0.5;  // of paths in plan.geojson [m]
 
-double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+// To `decimals` places, as the nearest double of that decimal.
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
 
 Json leg_json(const PlanLeg& leg) {
-  return {{"kind", config::enum_name(leg.kind)},
-          {"id", leg.id},
-          {"length_m", rounded(leg.cost.length_m, 1e-3)},
-          {"energy_j", rounded(leg.cost.energy_j, 1e-1)},
-          {"duration_s", rounded(leg.cost.duration_s, 1e-2)},
-          {"soc_end", rounded(leg.soc_end, 1e-5)}};
+  return {
+      {"kind", config::enum_name(leg.kind)},           {"id", leg.id},
+      {"length_m", rounded(leg.cost.length_m, 3)},     {"energy_j", rounded(leg.cost.energy_j, 1)},
+      {"duration_s", rounded(leg.cost.duration_s, 2)}, {"soc_end", rounded(leg.soc_end, 5)}};
 }
 
 double total_energy(const MissionPlan& plan) {
@@ -44,9 +46,15 @@ Json leg_coordinates(const Path& path, int leg, const Farm& farm) {
   for (int i = 0; i <= steps; ++i) {
     const LatLon p =
         farm.frame.to_wgs84(path.at(begin + (end - begin) * i / steps).pose.position());
-    coordinates.push_back({rounded(p.lon_deg, 1e-8), rounded(p.lat_deg, 1e-8)});
+    coordinates.push_back({rounded(p.lon_deg, 8), rounded(p.lat_deg, 8)});
   }
   return coordinates;
+}
+
+std::string gap_text(const MissionPlan& plan) {
+  if (plan.status() == PlanStatus::kOptimal) return "proven";
+  const double percent = 100.0 * plan.gap_ratio();
+  return percent < 0.01 ? "gap below 0.01 %" : fmt::format("gap {:.2f} %", percent);
 }
 
 }  // namespace
@@ -55,23 +63,23 @@ std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp
   Json document = {{"status", config::enum_name(plan.status())},
                    {"objective", config::enum_name(plan.objective)},
                    {"totals",
-                    {{"work_m", rounded(plan.work_m, 1e-3)},
-                     {"turn_m", rounded(plan.turn_m, 1e-3)},
-                     {"transit_m", rounded(plan.transit_m, 1e-3)},
-                     {"energy_j", rounded(total_energy(plan), 1e-1)},
-                     {"makespan_s", rounded(plan.makespan_s, 1e-2)},
+                    {{"work_m", rounded(plan.work_m, 3)},
+                     {"turn_m", rounded(plan.turn_m, 3)},
+                     {"transit_m", rounded(plan.transit_m, 3)},
+                     {"energy_j", rounded(total_energy(plan), 1)},
+                     {"makespan_s", rounded(plan.makespan_s, 2)},
                      {"charge_stops", plan.charge_stops}}},
                    {"objective_value", plan.value},
                    {"lower_bound", plan.lower_bound},
                    {"gap_ratio", plan.gap_ratio()},
-                   {"planning_s", rounded(planning_s, 1e-4)},
+                   {"planning_s", rounded(planning_s, 4)},
                    {"vehicles", Json::array()}};
   for (const VehiclePlan& vehicle : plan.vehicles) {
     Json legs = Json::array();
     for (const PlanLeg& leg : vehicle.legs) legs.push_back(leg_json(leg));
     document["vehicles"].push_back({{"id", vehicle.id},
-                                    {"energy_j", rounded(vehicle.energy_j, 1e-1)},
-                                    {"min_soc", rounded(vehicle.min_soc, 1e-5)},
+                                    {"energy_j", rounded(vehicle.energy_j, 1)},
+                                    {"min_soc", rounded(vehicle.min_soc, 5)},
                                     {"legs", std::move(legs)}});
   }
   document["headland"] = stamp_json(stamp);
@@ -92,7 +100,7 @@ std::string plan_geojson(const MissionPlan& plan, const Farm& farm, const Stamp&
       if (leg.kind == LegKind::kCharge) {
         const LatLon p = farm.frame.to_wgs84(path.end_pose().position());
         geometry = {{"type", "Point"},
-                    {"coordinates", {rounded(p.lon_deg, 1e-8), rounded(p.lat_deg, 1e-8)}}};
+                    {"coordinates", {rounded(p.lon_deg, 8), rounded(p.lat_deg, 8)}}};
         ++stage;
       } else {
         geometry = {{"type", "LineString"}, {"coordinates", leg_coordinates(path, i, farm)}};
@@ -118,14 +126,14 @@ std::string plan_text(const MissionPlan& plan, double planning_s) {
     for (const PlanLeg& leg : vehicle.legs) rows += leg.kind == LegKind::kRow ? 1 : 0;
   }
   return fmt::format(
-      "plan       {} ({} to the lower bound), found in {:.2f} s\n"
+      "plan       {} ({}), found in {:.2f} s\n"
       "rows       {} rows, {:.0f} m of work\n"
       "driving    {:.0f} m in turns, {:.0f} m in transit\n"
-      "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.0f} %\n"
+      "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.1f} %\n"
       "duration   {}\n",
-      config::enum_name(plan.status()), fmt::format("gap {:.2f} %", 100.0 * plan.gap_ratio()),
-      planning_s, rows, plan.work_m, plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6,
-      plan.charge_stops, plan.charge_stops == 1 ? "" : "s",
+      config::enum_name(plan.status()), gap_text(plan), planning_s, rows, plan.work_m, plan.turn_m,
+      plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
+      plan.charge_stops == 1 ? "" : "s",
       100.0 * (plan.vehicles.empty() ? 1.0 : plan.vehicles.front().min_soc),
       duration_text(plan.makespan_s));
 }

@@ -208,6 +208,7 @@ Report run_report(const PlannedMission& planned, const Run& run, double real_tim
   Report report = base_report(planned, ReportKind::kRun, rows_done);
   const RunMetrics& m = run.metrics;
   report.status = m.completed ? "completed" : "failed";
+  report.seed = planned.config.simulation.seed;
   report.tiles.push_back(
       {"Rows done", fmt::format("{} / {}", m.rows_done, m.rows_total), "", m.reason});
   report.tiles.push_back(

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include <fmt/format.h>
@@ -37,13 +38,20 @@ Run drive(const PlannedMission& planned, double realtime) {
 }  // namespace
 
 int run_command(const CommonOptions& options, double realtime) {
+  if (auto ready = prepare_output(options.out); !ready) {
+    return report_error(ready.error(), options);
+  }
   const auto planned = plan_from_file(options);
   if (!planned) return report_error(planned.error(), options);
+  if (!options.json) fmt::print("{}\n", plan_text(planned->plan, planned->planning_s));
+  std::fflush(stdout);
   const auto begin = Clock::now();
   const Run run = drive(*planned, realtime);
   const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
 
-  const std::string metrics = metrics_json(run, real_time_factor, planned->stamp);
+  const std::string metrics =
+      metrics_json(run, real_time_factor,
+                   make_stamp(planned->config.simulation.seed, planned->stamp.config_yaml));
   const auto written = write_report(
       run_report(*planned, run, real_time_factor), options.out,
       {{"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
@@ -56,8 +64,7 @@ int run_command(const CommonOptions& options, double realtime) {
   if (options.json) {
     fmt::print("{}", metrics);
   } else {
-    fmt::print("{}\n{}{}", plan_text(planned->plan, planned->planning_s),
-               run_text(run, real_time_factor), report_line(options.out));
+    fmt::print("{}{}", run_text(run, real_time_factor), report_line(options.out));
   }
   return run.metrics.completed ? 0 : 3;
 }

@@ -29,9 +29,10 @@ std::string metrics_json(const Run& run, double real_time_factor, const Stamp& s
       {"energy_j", m.energy_j},
       {"duration_s", m.duration_s},
       {"min_soc", m.min_soc},
+      {"reserve_kept", m.reserve_kept},
       {"wrong_gear_count", m.wrong_gear_count},
       {"real_time_factor", real_time_factor},
-      // There is nothing yet that could be hit or that stops the vehicle.
+      // Zero by construction: there are no agents yet, and rows and turns are checked beforehand.
       {"collisions", 0},
       {"near_collisions", 0},
       {"protective_stops", 0},
@@ -62,7 +63,7 @@ std::string run_text(const Run& run, double real_time_factor) {
       "run        {}{}\n"
       "rows done  {} of {}\n"
       "tracking   {:.1f} mm RMS in rows, {:.1f} mm in turns, at most {:.1f} mm\n"
-      "energy     {:.2f} kWh drawn, lowest state of charge {:.0f} %\n"
+      "energy     {:.2f} kWh drawn, lowest state of charge {:.1f} %\n"
       "duration   {} simulated, {:.0f} times real time\n",
       m.completed ? "finished" : "NOT finished: ", m.reason, m.rows_done, m.rows_total,
       1e3 * m.tracking.row_rms_m, 1e3 * m.tracking.turn_rms_m, 1e3 * m.tracking.max_m,

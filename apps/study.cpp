@@ -47,6 +47,9 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
 }  // namespace
 
 int study_command(const CommonOptions& options, int jobs, int max_episodes) {
+  if (auto ready = prepare_output(options.out); !ready) {
+    return report_error(ready.error(), options);
+  }
   const auto node = load_with_overrides(options);
   if (!node) return report_error(node.error(), options);
   const auto finished = run_study_file(*node, jobs, max_episodes);

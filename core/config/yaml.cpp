@@ -124,11 +124,23 @@ Result<void> Node::set(std::string_view dotted_key, const std::string& yaml_valu
 namespace internal {
 namespace {
 
+// A scalar as messages show it: one line of printable characters, not too long.
+std::string shown(const std::string& scalar) {
+  constexpr std::size_t kLongest = 40;
+  std::string text = scalar.substr(0, kLongest);
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+  }
+  return "'" + text + (scalar.size() > kLongest ? "...'" : "'");
+}
+
 tl::unexpected<Error> wrong_type(const Node& node, std::string_view wanted) {
-  const std::string got = node.is_map()        ? "a map"
-                          : node.is_sequence() ? "a list"
-                                               : "'" + node.scalar() + "'";
-  return fail(ErrorCode::kWrongType, got + " is not " + std::string(wanted), "", node.where());
+  const std::string got = node.is_map()           ? "a map"
+                          : node.is_sequence()    ? "a list"
+                          : node.scalar().empty() ? "nothing"
+                                                  : shown(node.scalar());
+  return fail(ErrorCode::kWrongType, got + " is not " + std::string(wanted),
+              "write " + std::string(wanted), node.where());
 }
 
 std::string join(const auto& words) {
@@ -192,14 +204,19 @@ tl::unexpected<Error> missing_key(const Node& map, std::string_view key, std::st
   return fail(ErrorCode::kMissingKey, "required key is missing", std::string(doc), where);
 }
 
+tl::unexpected<Error> repeated_key(const Node& map, const std::string& key) {
+  const auto child = map.child(key);
+  return fail(ErrorCode::kSyntax, "the key stands here twice", "keep one of the two",
+              child ? child->where() : map.where());
+}
+
 tl::unexpected<Error> not_a_map(const Node& node) { return wrong_type(node, "a map of keys"); }
 tl::unexpected<Error> not_a_sequence(const Node& node) { return wrong_type(node, "a list"); }
 
 tl::unexpected<Error> unknown_name(const Node& node, const std::vector<std::string_view>& names) {
-  return fail(
-      ErrorCode::kUnknownName,
-      (node.is_scalar() ? "'" + node.scalar() + "'" : std::string("this")) + " is not known",
-      "allowed: " + join(names), node.where());
+  return fail(ErrorCode::kUnknownName,
+              (node.is_scalar() ? shown(node.scalar()) : std::string("this")) + " is not known",
+              "allowed: " + join(names), node.where());
 }
 
 }  // namespace internal

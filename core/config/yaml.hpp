@@ -50,6 +50,7 @@ Result<std::string> to_text(const Node& node);
 tl::unexpected<Error> unknown_key(const Node& map, const std::string& key,
                                   const std::vector<std::string>& known);
 tl::unexpected<Error> missing_key(const Node& map, std::string_view key, std::string_view doc);
+tl::unexpected<Error> repeated_key(const Node& map, const std::string& key);
 tl::unexpected<Error> not_a_map(const Node& node);
 tl::unexpected<Error> not_a_sequence(const Node& node);
 tl::unexpected<Error> unknown_name(const Node& node, const std::vector<std::string_view>& names);
@@ -83,7 +84,9 @@ class Reader {
   /// Errors of the members, then of keys that no member asked for.
   Result<void> finish() const {
     if (error_) return tl::unexpected<Error>(*error_);
+    std::set<std::string> seen;
     for (const std::string& key : node_.keys()) {
+      if (!seen.insert(key).second) return internal::repeated_key(node_, key);
       bool known = false;
       for (const std::string& k : known_) known = known || k == key;
       if (!known) return internal::unknown_key(node_, key, known_);

@@ -22,9 +22,9 @@ struct Footprint {
 
   template <class V>
   void visit(V& v) {
-    v("front_m", front_m, config::kPositive, "From base to the foremost point [m]");
-    v("rear_m", rear_m, config::kNonNegative, "From base to the rearmost point [m]");
-    v("width_m", width_m, config::kPositive, "Overall width [m]");
+    v("front_m", front_m, config::Range{0.05, 30.0}, "From base to the foremost point [m]");
+    v("rear_m", rear_m, config::Range{0.0, 30.0}, "From base to the rearmost point [m]");
+    v("width_m", width_m, config::Range{0.1, 60.0}, "Overall width [m]");
   }
 };
 
@@ -40,14 +40,15 @@ struct Battery {
 
   template <class V>
   void visit(V& v) {
-    v("capacity_wh", capacity_wh, config::kPositive, "Usable energy of the full battery [Wh]");
+    v("capacity_wh", capacity_wh, config::Range{1.0, 1e7},
+      "Usable energy of the full battery [Wh]");
     v("reserve_soc", reserve_soc, config::Range{0.0, 0.9},
       "The plan never goes below this state of charge");
-    v("base_power_w", base_power_w, config::kNonNegative,
+    v("base_power_w", base_power_w, config::Range{0.0, 1e6},
       "Drawn whenever the vehicle is on: computers, pumps, fans [W]");
-    v("work_j_per_m", work_j_per_m, config::kNonNegative,
+    v("work_j_per_m", work_j_per_m, config::Range{0.0, 1e6},
       "Energy per metre with the implement at work in a row [J/m]");
-    v("transit_j_per_m", transit_j_per_m, config::kNonNegative,
+    v("transit_j_per_m", transit_j_per_m, config::Range{0.0, 1e6},
       "Energy per metre outside rows, implement up [J/m]");
   }
 };
@@ -91,22 +92,26 @@ struct Vehicle {
   void visit(V& v) {
     v.required("name", name, "Name of the vehicle");
     v("steering", steering, "ackermann or differential");
-    v("wheelbase_m", wheelbase_m, config::kPositive, "Between the axles [m]");
-    v("track_width_m", track_width_m, config::kPositive, "Between left and right wheels [m]");
+    v("wheelbase_m", wheelbase_m, config::Range{0.1, 20.0}, "Between the axles [m]");
+    v("track_width_m", track_width_m, config::Range{0.1, 20.0},
+      "Between left and right wheels [m]");
     v("max_steering_deg", max_steering_deg, config::Range{1.0, 80.0},
       "Largest steering angle of the bicycle model [deg]");
-    v("steering_rate_radps", steering_rate_radps, config::kPositive,
+    v("steering_rate_radps", steering_rate_radps, config::Range{0.01, 100.0},
       "Fastest change of the steering angle [rad/s]");
     v("steering_lag_s", steering_lag_s, config::Range{0.0, 2.0},
       "Time constant of the steering actuator [s]");
-    v("min_turning_radius_m", min_turning_radius_m, config::kNonNegative,
+    v("min_turning_radius_m", min_turning_radius_m, config::Range{0.0, 100.0},
       "Tightest planned turn [m]; 0: what the steering allows");
-    v("work_speed_mps", work_speed_mps, config::kPositive, "In rows [m/s]");
-    v("transit_speed_mps", transit_speed_mps, config::kPositive, "On roads and headlands [m/s]");
-    v("turn_speed_mps", turn_speed_mps, config::kPositive, "In headland turns [m/s]");
-    v("acceleration_mps2", acceleration_mps2, config::kPositive, "Speeding up and braking [m/s2]");
+    v("work_speed_mps", work_speed_mps, config::Range{0.05, 20.0}, "In rows [m/s]");
+    v("transit_speed_mps", transit_speed_mps, config::Range{0.05, 20.0},
+      "On roads and headlands [m/s]");
+    v("turn_speed_mps", turn_speed_mps, config::Range{0.05, 20.0}, "In headland turns [m/s]");
+    v("acceleration_mps2", acceleration_mps2, config::Range{0.01, 100.0},
+      "Speeding up and braking [m/s2]");
     v("can_reverse", can_reverse, "May plans use the reverse gear");
-    v("gear_change_s", gear_change_s, config::kNonNegative, "Standing time of a gear change [s]");
+    v("gear_change_s", gear_change_s, config::Range{0.0, 600.0},
+      "Standing time of a gear change [s]");
     v("footprint", footprint, "Outline");
     v("battery", battery, "Energy store and consumption");
   }

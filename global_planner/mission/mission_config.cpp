@@ -85,6 +85,13 @@ Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Fa
   auto vehicle = config::load<Vehicle>(resolve_path(config.model, directory));
   if (!vehicle) return tl::unexpected<Error>(vehicle.error());
   if (config.capacity_wh) vehicle->battery.capacity_wh = *config.capacity_wh;
+  const double reserve = vehicle->battery.reserve_soc;
+  if (config.soc < reserve) {
+    return fail(ErrorCode::kOutOfRange,
+                fmt::format("{} is below the battery's reserve of {}", config.soc, reserve),
+                "start with more charge, or lower reserve_soc in " + config.model,
+                {{}, 0, key + ".soc"});
+  }
   const auto start = find_place(farm, config.start, key + ".start");
   if (!start) return tl::unexpected<Error>(start.error());
   const auto finish =
@@ -108,7 +115,7 @@ std::filesystem::path resolve_path(const std::string& path,
   static constexpr std::string_view kVariable = "$HEADLAND_DATA";
   if (path.rfind(kVariable, 0) != 0) return (directory / path).lexically_normal();
   const char* data = std::getenv("HEADLAND_DATA");
-  return std::filesystem::path((data != nullptr ? data : "../shared/data") +
+  return std::filesystem::path((data != nullptr && *data != '\0' ? data : "../shared/data") +
                                path.substr(kVariable.size()));
 }
 

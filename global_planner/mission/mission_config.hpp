@@ -49,7 +49,8 @@ struct MissionVehicleConfig {
     v("soc", soc, config::kFraction, "State of charge at the start");
     v.required("start", start, "Where it starts");
     v("finish", finish, "Where it ends; default: where it starts");
-    v("capacity_wh", capacity_wh, config::kPositive, "Replaces the model's battery capacity [Wh]");
+    v("capacity_wh", capacity_wh, config::Range{1.0, 1e7},
+      "Replaces the model's battery capacity [Wh]");
   }
 };
 
@@ -70,6 +71,7 @@ struct PlannerConfig {
   int iterations = 0;
   int exact_up_to_rows = 16;
   double margin_m = 0.1;
+  double energy_margin_ratio = 0.05;
   bool fishtail = true;
   bool reeds_shepp = true;
 
@@ -80,8 +82,10 @@ struct PlannerConfig {
       "Local-search kicks; 0: a number that suits the size");
     v("exact_up_to_rows", exact_up_to_rows, config::Range{0, 18},
       "Up to this many rows the order is proven optimal");
-    v("margin_m", margin_m, config::kNonNegative,
+    v("margin_m", margin_m, config::Range{0.0, 10.0},
       "Kept between the outline and the edge of the drivable area [m]");
+    v("energy_margin_ratio", energy_margin_ratio, config::Range{0.0, 1.0},
+      "Recharge stops are planned as if all driving drew this much more: ramps, slowing, noise");
     v("fishtail", fishtail, "Allow fishtail turns");
     v("reeds_shepp", reeds_shepp, "Allow Reeds-Shepp turns");
   }
@@ -101,7 +105,7 @@ struct MissionConfig {
   void visit(V& v) {
     v.required("name", name, "Title of plan and report");
     v.required("farm", farm, "Farm files, relative to the mission's file; later ones add features");
-    v("headland_outside_m", headland_outside_m, config::kNonNegative,
+    v("headland_outside_m", headland_outside_m, config::Range{0.0, 1000.0},
       "Drivable strip around row parcels whose file gives none [m]");
     v.required("vehicles", vehicles, "The fleet");
     v("tasks", tasks, "What to do");

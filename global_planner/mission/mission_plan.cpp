@@ -41,9 +41,10 @@ RechargeProblem recharge_problem(const Mission& mission, const Transitions& tran
   const MissionVehicle& vehicle = mission.vehicles.front();
   const Battery& battery = vehicle.vehicle.battery;
   const Objective objective = mission.config.objective;
+  const double margin = 1.0 + mission.config.planner.energy_margin_ratio;
   const auto way = [&](int from, int to) {
     const DriveCost cost = transitions.cost(from, to);
-    return RechargeProblem::Way{cost.value(objective), cost.energy_j};
+    return RechargeProblem::Way{cost.value(objective), margin * cost.energy_j};
   };
   RechargeProblem problem;
   problem.capacity_j = battery.capacity_j();
@@ -62,7 +63,8 @@ RechargeProblem recharge_problem(const Mission& mission, const Transitions& tran
     }
     problem.gaps.push_back(std::move(ways));
     if (gap == visits.size()) break;
-    problem.item_energy_j.push_back(rows[static_cast<std::size_t>(visits[gap].row)].energy_j);
+    problem.item_energy_j.push_back(margin *
+                                    rows[static_cast<std::size_t>(visits[gap].row)].energy_j);
   }
   return problem;
 }
@@ -121,6 +123,9 @@ double plan_lower_bound(const Mission& mission, const Transitions& transitions,
 Result<MissionPlan> plan_mission(const Mission& mission) {
   const MissionVehicle& vehicle = mission.vehicles.front();
   const PlannerConfig& config = mission.config.planner;
+  if (auto error = mission::check_standing_places(mission)) {
+    return tl::unexpected<Error>(std::move(*error));
+  }
   const SiteIndex sites{static_cast<int>(mission.rows.size()),
                         static_cast<int>(mission.farm.chargers.size())};
   TransitionOptions options;

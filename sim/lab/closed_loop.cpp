@@ -60,7 +60,8 @@ class Driver {
       if (output.status == TrackStatus::kPathLost) return give_up("the tracker lost the path");
       const auto leg = static_cast<std::size_t>(stage.path.at(output.s).leg);
       vehicle_.step(output.command, plan_.legs[leg].kind, dt);
-      time_ += dt;
+      ++ticks_;
+      time_ = charged_s_ + static_cast<double>(ticks_) * dt;
       record(stage.path, output);
       if (std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
         return give_up("the vehicle left its path");
@@ -115,7 +116,8 @@ class Driver {
   void charge(int leg) {
     for (const Charger& charger : farm_.chargers) {
       if (charger.id == plan_.legs[static_cast<std::size_t>(leg)].id) {
-        time_ += vehicle_.charge_full(charger.power_w);
+        charged_s_ += vehicle_.charge_full(charger.power_w);
+        time_ = charged_s_ + static_cast<double>(ticks_) * config_.step_s;
       }
     }
     run_.leg_done[static_cast<std::size_t>(leg)] = true;
@@ -131,6 +133,12 @@ class Driver {
                               run_.trace.back().leg == static_cast<int>(i);
       run_.leg_done[i] = run_.leg_done[i] && !broken_off && worst_[i] <= config_.row_tolerance_m;
       metrics.rows_done += run_.leg_done[i] ? 1 : 0;
+    }
+    const double reserve = plan_.vehicle.battery.reserve_soc;
+    metrics.reserve_kept = metrics.min_soc >= reserve - 1e-9;
+    if (metrics.reason.empty() && !metrics.reserve_kept) {
+      metrics.reason = fmt::format("the charge fell to {:.1f} %, below the reserve of {:.1f} %",
+                                   100.0 * metrics.min_soc, 100.0 * reserve);
     }
     metrics.completed = metrics.reason.empty() && metrics.rows_done == metrics.rows_total;
     if (metrics.reason.empty() && !metrics.completed) {
@@ -162,7 +170,9 @@ class Driver {
   std::vector<double> leg_speed_;
   std::vector<double> worst_;  // largest cross-track error of each leg
   Run run_;
-  double time_ = 0.0;
+  long ticks_ = 0;
+  double charged_s_ = 0.0;  // spent at chargers
+  double time_ = 0.0;       // both
   double next_progress_ = 0.0;
   double stage_start_s_ = 0.0;
   double total_length_ = 0.0;

@@ -65,6 +65,7 @@ struct RunMetrics {
   double energy_j = 0.0;
   double duration_s = 0.0;
   double min_soc = 1.0;
+  bool reserve_kept = true;  ///< the battery never went below its reserve
   int wrong_gear_count = 0;  ///< ticks that drove against the path's gear
 };
 

@@ -6,6 +6,10 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "core/geometry/region.hpp"
+
 namespace headland::mission {
 namespace {
 
@@ -89,6 +93,42 @@ double least_detour(const Eigen::MatrixXd& cost, const SiteIndex& sites) {
 }
 
 }  // namespace
+
+std::optional<Error> check_standing_places(const Mission& mission) {
+  constexpr double kSpacing = 0.25;  // of the outlines along a row [m]
+  const Region drivable(drivable_area(mission.farm));
+  const MissionVehicle& vehicle = mission.vehicles.front();
+  const auto inside = [&](const Pose2& pose) {
+    return drivable.contains(pose, vehicle.vehicle.footprint);
+  };
+  const auto place_error = [](const std::string& place, const Pose2& pose, const std::string& key) {
+    return Error{
+        ErrorCode::kNoPath,
+        fmt::format("{} at ({:.1f}, {:.1f}): the vehicle does not fit into the drivable area "
+                    "there",
+                    place, pose.x, pose.y),
+        "put it on a road, headland or free parcel, clear of keep-outs",
+        {{}, 0, key}};
+  };
+  if (!inside(vehicle.start)) return place_error("the start", vehicle.start, "vehicles.0.start");
+  if (!inside(vehicle.finish))
+    return place_error("the finish", vehicle.finish, "vehicles.0.finish");
+  for (const RowRef ref : mission.rows) {
+    const Path path = row_path(mission.farm.row(ref), 0, vehicle.vehicle.turning_radius());
+    for (const PathSample& sample : path.sample(kSpacing)) {
+      // Either way round: the row may be driven in both directions.
+      if (inside(sample.pose) || inside(reversed(sample.pose))) continue;
+      return Error{
+          ErrorCode::kNoPath,
+          fmt::format("row {} at ({:.1f}, {:.1f}): the vehicle's outline leaves the drivable "
+                      "area or enters a keep-out",
+                      mission.farm.row_name(ref), sample.pose.x, sample.pose.y),
+          "leave the row out (tasks.rows), or correct keep-out, parcel or row",
+          {}};
+    }
+  }
+  return std::nullopt;
+}
 
 double forced_detours(const Mission& mission, const Transitions& transitions,
                       const SiteIndex& sites, double tour_bound) {
@@ -176,6 +216,7 @@ Error with_row_name(Error error, const std::string& word, const Mission& mission
   const auto begin = at + word.size() + 1;
   const auto end = error.what.find_first_not_of("0123456789", begin);
   if (end == begin) return error;
+  if (end != std::string::npos && end - begin > 6) return error;
   const auto index = static_cast<std::size_t>(std::stoi(error.what.substr(begin)));
   if (index < numbered.size()) {
     error.what.replace(at, end - at, "row " + mission.farm.row_name(numbered[index]));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "global_planner/coverage/transitions.hpp"
@@ -19,6 +21,10 @@ struct SiteIndex {
   int finish() const { return 2 * rows + 1; }
   int charger(int c) const { return 2 * rows + 2 + c; }
 };
+
+/// The vehicle has to fit where it starts, ends and charges, and all along its rows: an Error that
+/// names the first place where its outline leaves the drivable area or enters a keep-out.
+std::optional<Error> check_standing_places(const Mission& mission);
 
 /// Lower bound [objective's unit] on what the charge stops add to any order of rows that costs at
 /// least `tour_bound`: the fewest stops the battery allows, each at the smallest detour there is.

@@ -35,7 +35,7 @@ TEST(Yaml, OutOfRangeNamesDottedKeyAndBounds) {
   ASSERT_FALSE(vehicle);
   EXPECT_EQ(
       to_string(vehicle.error()),
-      "tractor.yaml:3: battery.capacity_wh: -1 is out of range; must be greater than 0 [E106]");
+      "tractor.yaml:3: battery.capacity_wh: -1 is out of range; allowed: 1 to 10000000 [E106]");
 }
 
 TEST(Yaml, MissingRequiredKeyIsAnError) {
@@ -60,6 +60,19 @@ TEST(Yaml, WrittenTextReadsBackToTheSameText) {
   const auto again = read(text);
   ASSERT_TRUE(again) << to_string(again.error()) << text;
   EXPECT_EQ(config::to_yaml(*again), text);
+}
+
+TEST(Yaml, AKeyThatStandsTwiceIsAnError) {
+  const auto vehicle = read("name: t\nwheelbase_m: 2\nname: u\n");
+  ASSERT_FALSE(vehicle);
+  EXPECT_NE(to_string(vehicle.error()).find("name: the key stands here twice"), std::string::npos)
+      << to_string(vehicle.error());
+}
+
+TEST(Yaml, LongAndUnprintableTextsAreCutInMessages) {
+  const auto vehicle = read("name: t\nwheelbase_m: \"" + std::string(5000, 'x') + "\\x01\"\n");
+  ASSERT_FALSE(vehicle);
+  EXPECT_LT(to_string(vehicle.error()).size(), 200u);
 }
 
 TEST(Yaml, SetOverridesNestedKeysAndListItems) {

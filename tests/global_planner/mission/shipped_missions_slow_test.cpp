@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <gtest/gtest.h>
 #include <map>
 #include <set>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "core/config/yaml.hpp"
 #include "global_planner/mission/mission_plan.hpp"
@@ -43,7 +44,8 @@ void expect_inside(const Mission& mission, const MissionPlan& plan) {
   for (const RowRef ref : farm.all_rows()) {
     number[farm.row_name(ref)] = static_cast<int>(rows.size());
     rows.push_back(farm.row(ref));
-    spacing = std::min(spacing, farm.row_parcels[static_cast<std::size_t>(ref.parcel)].row_spacing_m);
+    spacing =
+        std::min(spacing, farm.row_parcels[static_cast<std::size_t>(ref.parcel)].row_spacing_m);
   }
   test::OutlineChecker checker(farm, rows, spacing - 0.02, vehicle.vehicle.footprint);
   const int legs = static_cast<int>(vehicle.legs.size());
@@ -79,8 +81,8 @@ TEST_P(ShippedMission, PlansWithinTheGapAndNeverLeavesHeadlandOrRoad) {
 
 INSTANTIATE_TEST_SUITE_P(All, ShippedMission,
                          testing::Values("girona_orchard", "kiato_vineyard", "ebs221_field",
-                                         "polito_orchard", "jojos_vineyard",
-                                         "jojos_vineyard_carob", "estate_1000_rows"),
+                                         "polito_orchard", "jojos_vineyard", "jojos_vineyard_carob",
+                                         "estate_1000_rows"),
                          [](const auto& mission) { return std::string(mission.param); });
 
 }  // namespace

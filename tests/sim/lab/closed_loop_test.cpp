@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sim/lab/closed_loop.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace headland {
+namespace {
+
+Vehicle rover() {
+  Vehicle vehicle;
+  vehicle.name = "rover";
+  vehicle.steering = Steering::kDifferential;
+  vehicle.min_turning_radius_m = 1.0;
+  vehicle.work_speed_mps = 1.0;
+  vehicle.transit_speed_mps = 1.0;
+  vehicle.turn_speed_mps = 1.0;
+  vehicle.battery = {100.0, 0.1, 50.0, 500.0, 300.0};
+  return vehicle;
+}
+
+// Two rows of 20 m joined by a half circle.
+VehiclePlan two_rows(double start_soc = 1.0) {
+  VehiclePlan plan;
+  plan.id = "rover";
+  plan.vehicle = rover();
+  plan.start_soc = start_soc;
+  PlanStage stage;
+  stage.path.append_straight({0.0, 0.0, 0.0}, 20.0, 0);
+  Curve turn;
+  turn.add({0.5, 2.0 * kPi});
+  stage.path.append(turn, {20.0, 0.0, 0.0}, 1);
+  stage.path.append_straight(stage.path.end_pose(), 20.0, 2);
+  plan.stages.push_back(stage);
+  const auto leg = [&](LegKind kind, const char* id, double length) {
+    plan.legs.push_back({kind, id, drive_cost(plan.vehicle, kind, length), 1.0, 0});
+  };
+  leg(LegKind::kRow, "p/r1", 20.0);
+  leg(LegKind::kTurn, "turn", 2.0 * kPi);
+  leg(LegKind::kRow, "p/r2", 20.0);
+  return plan;
+}
+
+TEST(ClosedLoop, DrivesAllRowsCloseToThePathAtTheEnergyPlanned) {
+  const VehiclePlan plan = two_rows();
+  const auto run = drive_plan(plan, Farm{}, {});
+  EXPECT_TRUE(run.metrics.completed) << run.metrics.reason;
+  EXPECT_EQ(run.metrics.rows_done, 2);
+  EXPECT_EQ(run.metrics.rows_total, 2);
+  EXPECT_LT(run.metrics.tracking.max_m, 0.02);
+  EXPECT_EQ(run.metrics.wrong_gear_count, 0);
+  double planned = 0.0;
+  for (const PlanLeg& leg : plan.legs) planned += leg.cost.energy_j;
+  EXPECT_NEAR(run.metrics.energy_j, planned, 0.05 * planned);
+}
+
+TEST(ClosedLoop, FallingBelowTheReserveIsNotASuccess) {
+  const auto run = drive_plan(two_rows(0.11), Farm{}, {});
+  EXPECT_FALSE(run.metrics.completed);
+  EXPECT_FALSE(run.metrics.reserve_kept);
+  EXPECT_NE(run.metrics.reason.find("below the reserve"), std::string::npos) << run.metrics.reason;
+}
+
+TEST(ClosedLoop, AnEmptyBatteryEndsTheRunOnTheRowItStopsIn) {
+  const auto run = drive_plan(two_rows(0.03), Farm{}, {});
+  EXPECT_FALSE(run.metrics.completed);
+  EXPECT_EQ(run.metrics.rows_done, 0);
+  EXPECT_NE(run.metrics.reason.find("the battery is empty"), std::string::npos)
+      << run.metrics.reason;
+  EXPECT_NE(run.metrics.reason.find("p/r1"), std::string::npos) << run.metrics.reason;
+}
+
+TEST(ClosedLoop, ARowDrivenOffItsLineIsNotDone) {
+  SimulationConfig config;
+  config.row_tolerance_m = 1e-6;
+  config.sensors.position_accuracy_m = 0.05;
+  const auto run = drive_plan(two_rows(), Farm{}, config);
+  EXPECT_FALSE(run.metrics.completed);
+  EXPECT_EQ(run.metrics.rows_done, 0);
+}
+
+TEST(ClosedLoop, SameSeedSameTraceOtherSeedOtherTrace) {
+  SimulationConfig config;
+  config.sensors.position_accuracy_m = 0.02;
+  const auto a = drive_plan(two_rows(), Farm{}, config);
+  const auto b = drive_plan(two_rows(), Farm{}, config);
+  config.seed = 2;
+  const auto c = drive_plan(two_rows(), Farm{}, config);
+  ASSERT_EQ(a.trace.size(), b.trace.size());
+  bool differs = false;
+  for (std::size_t i = 0; i < a.trace.size(); ++i) {
+    ASSERT_EQ(a.trace[i].x_m, b.trace[i].x_m);
+    ASSERT_EQ(a.trace[i].yaw_rad, b.trace[i].yaw_rad);
+    differs = differs || i >= c.trace.size() || a.trace[i].y_m != c.trace[i].y_m;
+  }
+  EXPECT_TRUE(differs);
+}
+
+TEST(TraceTicks, KeepFirstAndLastAndThePeriod) {
+  std::vector<TraceRow> trace(1001);
+  for (std::size_t i = 0; i < trace.size(); ++i) trace[i].t_s = 0.02 * static_cast<double>(i);
+  const std::vector<int> ticks = trace_ticks(trace, 0.1);
+  EXPECT_EQ(ticks.front(), 0);
+  EXPECT_EQ(ticks.back(), 1000);
+  EXPECT_EQ(ticks.size(), 201u);
+  EXPECT_EQ(trace_ticks(trace, 0.0).size(), trace.size());
+  EXPECT_TRUE(trace_ticks({}, 0.1).empty());
+}
+
+}  // namespace
+}  // namespace headland
