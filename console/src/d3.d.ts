@@ -39,6 +39,7 @@ declare module 'd3-scale' {
     (value: number): number;
     domain(): number[];
     domain(domain: [number, number]): this;
+    range(): number[];
     range(range: [number, number]): this;
     invert(position: number): number;
     nice(count?: number): this;

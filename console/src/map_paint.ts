@@ -144,13 +144,11 @@ export function paint_color_bar(context: CanvasRenderingContext2D, right: number
   context.font = font(11, 500);
   context.textBaseline = 'alphabetic';
   context.textAlign = 'left';
-  context.fillText(width < 100 ? '|error| [m]' : 'Cross-track error [m]', x, y - 8);
+  context.fillText(width < 100 ? '|error| [mm]' : 'Cross-track error [mm]', x, y - 8);
   context.fillStyle = theme.get('muted');
   context.fillText('0', x, y + 22);
-  context.textAlign = 'center';
-  if (width > 100) context.fillText(number(full_scale_m / 2), x + width / 2, y + 22);
   context.textAlign = 'right';
-  context.fillText('\u2265 ' + number(full_scale_m), x + width, y + 22);
+  context.fillText('\u2265 ' + number(1000 * full_scale_m), x + width, y + 22);
   context.textAlign = 'left';
 }
 

@@ -171,7 +171,8 @@ export class Plot {
     const left = Math.ceil(Math.max(this.options.left ?? 24, ...y_ticks.map(([, text]) => context.measureText(text).width)) + 10);
     this.x_pixels = [left, width - kRight];
     this.x = scaleLinear().domain(this.shared.range() ?? this.all_x).range(this.x_pixels);
-    this.paint_axes(context, y_ticks, theme, width, height);
+    if (this.data.x_label === 'x [m]' && this.data.y_label === 'y [m]') this.equalise();
+    this.paint_axes(context, this.y_ticks(count), theme, width, height);
     context.save();
     context.beginPath();
     context.rect(left - 4, 0, width - kRight - left + 8, height - kBottom + 4);
@@ -179,6 +180,21 @@ export class Plot {
     this.data.series.forEach((series, i) => this.paint_series(context, series, series_color(i, theme)));
     this.paint_reference(context, theme, left, width - kRight);
     context.restore();
+  }
+
+  // A drawing of places: a metre is as long upwards as sideways.
+  private equalise(): void {
+    const metres_per_pixel = (scale: Scale): number => {
+      const [low, high] = scale.domain() as [number, number];
+      const [begin, end] = scale.range() as [number, number];
+      return (high - low) / Math.abs(end - begin);
+    };
+    const coarser = Math.max(metres_per_pixel(this.x), metres_per_pixel(this.y));
+    for (const scale of [this.x, this.y]) {
+      const [low, high] = scale.domain() as [number, number];
+      const widen = 0.5 * (high - low) * (coarser / metres_per_pixel(scale) - 1);
+      scale.domain([low - widen, high + widen]);
+    }
   }
 
   private y_ticks(count: number): [number, string][] {

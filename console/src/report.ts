@@ -69,8 +69,9 @@ function build(report: Report): void {
     parts.push(plot);
     grid.append(plot.root);
   }
-  if (report.plots.length) page.push(grid);
-  for (const data of report.tables) page.push(table(data, has_map ? link : null));
+  const tables = report.tables.map((data) => table(data, has_map ? link : null));
+  // A study's findings come first, its pictures after them.
+  page.push(...tables, ...(report.plots.length ? [grid] : []));
   if (report.config_yaml) {
     page.push(element('details', {class: 'card'}, element('summary', {}, 'Effective configuration'),
         element('pre', {tabindex: '0'}, report.config_yaml)));
