@@ -44,7 +44,7 @@ int run(int argc, char** argv) {
   auto* seed_option = run->add_option("--seed", seed, "Seed of the simulation's noise");
   run->add_option("--realtime", realtime,
                   "Pace: 1 is real time, 10 ten times as fast; 0: no pacing")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0.0, 1e6));
   run->callback([&] {
     if (*seed_option) options.set.push_back(fmt::format("simulation.seed={}", seed));
     code = headland::apps::run_command(options, realtime);
