@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <thread>
 
@@ -38,6 +39,11 @@ Run drive(const PlannedMission& planned, double realtime) {
 }  // namespace
 
 int run_command(const CommonOptions& options, double realtime) {
+  if (!std::isfinite(realtime)) {
+    return report_error(
+        {ErrorCode::kOutOfRange, "not a number", "write 0 or more", {"--realtime", 0, ""}},
+        options);
+  }
   if (auto ready = prepare_output(options.out); !ready) {
     return report_error(ready.error(), options);
   }
