@@ -18,10 +18,13 @@ SimulatedVehicle::SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, d
 void SimulatedVehicle::step(const Command& command, LegKind kind, double dt) {
   const VehicleState before = state_;
   state_ = step_vehicle(vehicle_, state_, command, dt);
-  const double distance = 0.5 * std::abs(before.speed + state_.speed) * dt;
-  const Battery& battery = vehicle_.battery;
-  const double per_metre = kind == LegKind::kRow ? battery.work_j_per_m : battery.transit_j_per_m;
-  const double drawn = battery.base_power_w * dt + per_metre * distance;
+  DriveStep driven;
+  driven.distance_m = 0.5 * std::abs(before.speed + state_.speed) * dt;
+  driven.duration_s = dt;
+  driven.speed_mps = std::abs(state_.speed);
+  driven.speed_before_mps = driven.speed_mps;
+  driven.working = kind == LegKind::kRow;
+  const double drawn = step_energy(vehicle_.energy, driven);
   drawn_j_ += drawn;
   energy_j_ = std::max(0.0, energy_j_ - drawn);
 }

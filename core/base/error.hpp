@@ -20,11 +20,14 @@ enum class ErrorCode : int {
   kUnknownName = 108,
   kFileNotWritable = 109,
   kUnsupported = 110,
+  kOffTerrain = 111,
   // 2xx: no feasible answer (global planner). Exit code 3.
   kTurnDoesNotFit = 201,
   kNoPath = 202,
   kEnergyInfeasible = 203,
   kNoRows = 204,
+  kTooSteep = 205,
+  kTaskDoesNotFit = 206,
   // 4xx: control.
   kPathLost = 401,
   // 9xx: a broken invariant. Exit code 4.

@@ -17,11 +17,19 @@ double leg_speed(const Vehicle& vehicle, LegKind kind) {
   return vehicle.transit_speed_mps;
 }
 
-DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps) {
-  const double duration = length / leg_speed(vehicle, kind) + cusps * vehicle.gear_change_s;
-  const double per_metre =
-      kind == LegKind::kRow ? vehicle.battery.work_j_per_m : vehicle.battery.transit_j_per_m;
-  return {length, duration, vehicle.battery.base_power_w * duration + per_metre * length};
+DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps,
+                     SoilClass soil) {
+  const double speed = leg_speed(vehicle, kind);
+  DriveStep step;
+  step.distance_m = length;
+  step.duration_s = length / speed;
+  step.speed_mps = speed;
+  step.speed_before_mps = speed;
+  step.soil = soil;
+  step.working = kind == LegKind::kRow;
+  const double standing = cusps * vehicle.gear_change_s;
+  const double energy = step_energy(vehicle.energy, step) + vehicle.energy.base_power_w * standing;
+  return {length, step.duration_s + standing, energy, energy};
 }
 
 }  // namespace headland

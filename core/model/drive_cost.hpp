@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -17,9 +18,12 @@ enum class Objective { kEnergy, kTime, kLength };
 struct DriveCost {
   double length_m = 0.0;
   double duration_s = 0.0;
-  double energy_j = 0.0;
+  double energy_j = 0.0;  ///< net; negative where more is recuperated than drawn
+  double peak_j = 0.0;    ///< most that was drawn at any point since the beginning, >= energy_j, 0
 
+  /// This and then `other`.
   DriveCost& operator+=(const DriveCost& other) {
+    peak_j = std::max(peak_j, energy_j + other.peak_j);
     length_m += other.length_m;
     duration_s += other.duration_s;
     energy_j += other.energy_j;
@@ -37,9 +41,9 @@ struct DriveCost {
 /// Speed of a kind of leg [m/s].
 double leg_speed(const Vehicle& vehicle, LegKind kind);
 
-/// Cost of `length` [m] driven as `kind` with `cusps` changes of gear, on flat ground: base power
-/// over the duration plus the work per metre of the kind.
-DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps = 0);
+/// Cost of `length` [m] driven as `kind` with `cusps` changes of gear, straight on flat ground.
+DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps = 0,
+                     SoilClass soil = SoilClass::kFirm);
 
 }  // namespace headland
 

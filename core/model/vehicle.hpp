@@ -8,6 +8,8 @@
 #include "core/base/error.hpp"
 #include "core/config/visit.hpp"
 #include "core/geometry/pose2.hpp"
+#include "core/model/charge_curve.hpp"
+#include "core/model/energy.hpp"
 
 namespace headland {
 
@@ -28,15 +30,21 @@ struct Footprint {
   }
 };
 
-/// Energy store and what driving costs on flat ground.
+/// Energy store. Charging is constant current up to `cv_soc` and then constant voltage: the power
+/// falls linearly in soc to `end_power_ratio` of it when full.
 struct Battery {
   double capacity_wh = 10000.0;
   double reserve_soc = 0.15;
-  double base_power_w = 300.0;
-  double work_j_per_m = 500.0;
-  double transit_j_per_m = 350.0;
+  double charge_power_w = 1e6;
+  double cv_soc = 1.0;
+  double end_power_ratio = 0.1;
 
   double capacity_j() const { return capacity_wh * 3600.0; }
+  double reserve_j() const { return reserve_soc * capacity_j(); }
+  /// What the battery takes, whatever the charger gives.
+  ChargeCurve acceptance() const {
+    return ChargeCurve::cc_cv(charge_power_w, cv_soc, end_power_ratio);
+  }
 
   template <class V>
   void visit(V& v) {
@@ -44,12 +52,12 @@ struct Battery {
       "Usable energy of the full battery [Wh]");
     v("reserve_soc", reserve_soc, config::Range{0.0, 0.9},
       "The plan never goes below this state of charge");
-    v("base_power_w", base_power_w, config::Range{0.0, 1e6},
-      "Drawn whenever the vehicle is on: computers, pumps, fans [W]");
-    v("work_j_per_m", work_j_per_m, config::Range{0.0, 1e6},
-      "Energy per metre with the implement at work in a row [J/m]");
-    v("transit_j_per_m", transit_j_per_m, config::Range{0.0, 1e6},
-      "Energy per metre outside rows, implement up [J/m]");
+    v("charge_power_w", charge_power_w, config::Range{1.0, 1e7},
+      "Most it takes when charged at constant current [W]");
+    v("cv_soc", cv_soc, config::Range{0.05, 1.0},
+      "State of charge from which it is charged at constant voltage; 1: never");
+    v("end_power_ratio", end_power_ratio, config::Range{0.01, 1.0},
+      "Power when full over charge_power_w, if cv_soc is below 1");
   }
 };
 
@@ -69,7 +77,10 @@ struct Vehicle {
   double acceleration_mps2 = 1.0;
   bool can_reverse = true;
   double gear_change_s = 2.0;
+  double max_pitch_deg = 20.0;
+  double max_roll_deg = 15.0;
   Footprint footprint;
+  EnergyModel energy;
   Battery battery;
 
   double max_steering_rad() const { return deg_to_rad(max_steering_deg); }
@@ -112,8 +123,11 @@ struct Vehicle {
     v("can_reverse", can_reverse, "May plans use the reverse gear");
     v("gear_change_s", gear_change_s, config::Range{0.0, 600.0},
       "Standing time of a gear change [s]");
+    v("max_pitch_deg", max_pitch_deg, config::Range{0.1, 60.0}, "Steepest climb or descent [deg]");
+    v("max_roll_deg", max_roll_deg, config::Range{0.1, 60.0}, "Steepest cross-slope [deg]");
     v("footprint", footprint, "Outline");
-    v("battery", battery, "Energy store and consumption");
+    v("energy", energy, "What driving and working draws");
+    v("battery", battery, "Energy store and charging");
   }
 };
 

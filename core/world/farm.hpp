@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/geometry/polygon.hpp"
+#include "core/model/charge_curve.hpp"
+#include "core/model/soil.hpp"
 #include "core/world/geodesy.hpp"
+#include "core/world/terrain.hpp"
 
 namespace headland {
 
@@ -69,8 +73,15 @@ struct Poi {
 struct Charger {
   std::string id;
   Pose2 pose;  ///< in which a vehicle charges; it drives in and out forwards
-  double power_w = 10000.0;
-  int slots = 1;
+  ChargeCurve curve{10000.0};
+  int slots = 1;  ///< vehicles at a time
+};
+
+/// An area of one soil.
+struct SoilArea {
+  std::string id;
+  SoilClass soil = SoilClass::kFirm;
+  Polygon boundary;
 };
 
 /// A farm in its local frame; what farm files and importers produce and everything else reads.
@@ -84,7 +95,9 @@ struct Farm {
   std::vector<Gate> gates;
   std::vector<Poi> pois;
   std::vector<Charger> chargers;
-  std::vector<std::string> terrain_files;  ///< GeoTIFFs; not opened here
+  std::vector<SoilArea> soils;             ///< later ones lie on top of earlier ones
+  std::vector<std::string> terrain_files;  ///< GeoTIFFs; opened by load_ground
+  std::optional<HillSpec> hills;           ///< generated terrain, where there is no file
 
   /// The parcel, POI or charger of that id, or null.
   const RowParcel* find_parcel(std::string_view id) const;

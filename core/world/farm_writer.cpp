@@ -85,7 +85,7 @@ void write_places(const Farm& farm, Writer& out) {
   for (const Charger& c : farm.chargers) {
     out.feature({{"kind", "charger"},
                  {"id", c.id},
-                 {"power_w", c.power_w},
+                 {"power_w", c.curve.max_power()},
                  {"slots", c.slots},
                  {"heading_deg", heading_deg(c.pose.yaw)}},
                 out.point(c.pose.position()));

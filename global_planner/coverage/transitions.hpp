@@ -12,16 +12,9 @@
 #include "core/geometry/region.hpp"
 #include "core/model/drive_cost.hpp"
 #include "core/world/farm.hpp"
+#include "global_planner/roadmap/goal_graph.hpp"
 
 namespace headland {
-
-/// A place that a tour leaves and enters: a row's end (left outwards, entered inwards), a charger
-/// or a POI (driven into and out of in the same heading).
-struct Site {
-  Pose2 depart;
-  Pose2 arrive;
-  std::string name;  ///< for messages: "row ba20, north end"
-};
 
 struct TransitionOptions {
   Objective objective = Objective::kEnergy;

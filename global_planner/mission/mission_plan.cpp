@@ -51,7 +51,8 @@ RechargeProblem recharge_problem(const Mission& mission, const Transitions& tran
   problem.start_energy_j = vehicle.soc * battery.capacity_j();
   problem.reserve_j = battery.reserve_soc * battery.capacity_j();
   for (const Charger& charger : mission.farm.chargers) {
-    problem.stop_cost_per_j.push_back(objective == Objective::kTime ? 1.0 / charger.power_w : 0.0);
+    problem.stop_cost_per_j.push_back(
+        objective == Objective::kTime ? 1.0 / charger.curve.max_power() : 0.0);
   }
   for (std::size_t gap = 0; gap <= visits.size(); ++gap) {
     const int from = gap == 0 ? sites.start() : visits[gap - 1].exit_end();

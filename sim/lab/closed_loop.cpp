@@ -116,7 +116,7 @@ class Driver {
   void charge(int leg) {
     for (const Charger& charger : farm_.chargers) {
       if (charger.id == plan_.legs[static_cast<std::size_t>(leg)].id) {
-        charged_s_ += vehicle_.charge_full(charger.power_w);
+        charged_s_ += vehicle_.charge_full(charger.curve.max_power());
         time_ = charged_s_ + static_cast<double>(ticks_) * config_.step_s;
       }
     }

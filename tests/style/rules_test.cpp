@@ -124,7 +124,7 @@ TEST(Units, KeysOfDoublesWithoutUnitAreFound) {
   };
   EXPECT_THAT(check_units(with_key("lookahead")), ElementsAre(HasSubstr("core/a.hpp:5")));
   EXPECT_EQ(check_units(with_key("speed_kph")).size(), 1U);
-  for (const char* key : {"lookahead_m", "speed_mps", "work_j_per_m", "start_soc", "soc",
+  for (const char* key : {"lookahead_m", "speed_mps", "work_j", "start_soc", "soc",
                           "overlap_ratio", "curvature_1pm", "angle_deg"}) {
     EXPECT_THAT(check_units(with_key(key)), IsEmpty()) << key;
   }

@@ -47,7 +47,8 @@ class TourBuilder {
   void add_charge(int charger_index) {
     const Charger& charger = mission_.farm.chargers[static_cast<std::size_t>(charger_index)];
     PlanLeg leg{LegKind::kCharge, charger.id, {}, 1.0, 0};
-    leg.cost.duration_s = (1.0 - soc_) * plan_.vehicle.battery.capacity_j() / charger.power_w;
+    leg.cost.duration_s =
+        (1.0 - soc_) * plan_.vehicle.battery.capacity_j() / charger.curve.max_power();
     soc_ = 1.0;
     plan_.stages.back().charge_leg = static_cast<int>(plan_.legs.size());
     plan_.legs.push_back(leg);
@@ -147,7 +148,8 @@ double forced_detours(const Mission& mission, const Transitions& transitions,
   double charging = 0.0;
   if (mission.config.objective == Objective::kTime) {
     double power = 0.0;
-    for (const Charger& charger : mission.farm.chargers) power = std::max(power, charger.power_w);
+    for (const Charger& charger : mission.farm.chargers)
+      power = std::max(power, charger.curve.max_power());
     charging = (bound.energy_j - bound.start_j) / power;
   }
   return recharge_lower_bound(bound) + charging;

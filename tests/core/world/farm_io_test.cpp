@@ -128,7 +128,7 @@ TEST(FarmIo, ReadsEveryKindWithItsProperties) {
   EXPECT_NEAR(farm->find_poi("w")->pose.x, -40.0, 1e-3);
   EXPECT_NEAR(farm->find_poi("w")->pose.yaw, kPi, 1e-12);
   ASSERT_NE(farm->find_charger("c"), nullptr);
-  EXPECT_EQ(farm->find_charger("c")->power_w, 22000.0);
+  EXPECT_EQ(farm->find_charger("c")->curve.max_power(), 22000.0);
   EXPECT_EQ(farm->find_charger("c")->slots, 2);
   ASSERT_EQ(farm->terrain_files.size(), 1u);
   EXPECT_EQ(std::filesystem::path(farm->terrain_files[0]).filename(), "dem.tif");
@@ -145,7 +145,7 @@ TEST(FarmIo, DefaultsFillWhatTheFileLeavesOut) {
   ASSERT_TRUE(farm) << to_string(farm.error());
   EXPECT_EQ(farm->row_parcels[0].headland_outside_m, 7.0);
   EXPECT_EQ(farm->row_parcels[0].headland_width_m, 0.0);
-  EXPECT_EQ(farm->chargers[0].power_w, 10000.0);
+  EXPECT_EQ(farm->chargers[0].curve.max_power(), 10000.0);
   EXPECT_EQ(farm->chargers[0].slots, 1);
   EXPECT_EQ(farm->roads[0].width_m, 4.0);
 }

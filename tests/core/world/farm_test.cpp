@@ -21,7 +21,7 @@ TEST(Farm, FindsByIdOrGivesNull) {
   farm.row_parcels.resize(2);
   farm.row_parcels[1].id = "b";
   farm.pois.push_back({"dock", "dock", {}});
-  farm.chargers.push_back({"c1", {}, 22000.0, 1});
+  farm.chargers.push_back({"c1", {}, ChargeCurve(22000.0), 1});
   EXPECT_EQ(farm.find_parcel("b"), &farm.row_parcels[1]);
   EXPECT_EQ(farm.find_parcel("c"), nullptr);
   EXPECT_EQ(farm.find_poi("dock"), &farm.pois[0]);
@@ -57,7 +57,7 @@ TEST(Farm, GatesPoisAndChargersAreDiscs) {
   Farm farm;
   farm.gates.push_back({"gate", {0, 0}, 6.0});
   farm.pois.push_back({"dock", "dock", {100, 0, 0}});
-  farm.chargers.push_back({"c1", {200, 0, 0}, 22000.0, 1});
+  farm.chargers.push_back({"c1", {200, 0, 0}, ChargeCurve(22000.0), 1});
   const auto discs = drivable_area(farm);
   ASSERT_EQ(discs.size(), 3u);
   EXPECT_NEAR(total_area(discs), kPi * (9.0 + 16.0 + 16.0), 0.3);

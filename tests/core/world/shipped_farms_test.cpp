@@ -88,7 +88,7 @@ TEST(ShippedFarms, GironaHasTheOrchardsMeasures) {
   EXPECT_NE(farm.find_poi("warehouse"), nullptr);
   EXPECT_NE(farm.find_poi("dock"), nullptr);
   ASSERT_EQ(farm.chargers.size(), 1u);
-  EXPECT_EQ(farm.chargers[0].power_w, 22000.0);
+  EXPECT_EQ(farm.chargers[0].curve.max_power(), 22000.0);
   expect_connected(farm);
 }
 

@@ -252,7 +252,7 @@ TEST(Transitions, StopsAreLeftAndEnteredInTheirHeading) {
   Farm farm = make_field({6, 40.0, 2.5, 12.0, 8.0, 0.0});
   farm.free_parcels.push_back(
       {"yard", {{{-30.0, -12.0}, {-7.0, -12.0}, {-7.0, 8.0}, {-30.0, 8.0}}, {}}});
-  farm.chargers.push_back({"charger", {-20.0, -4.0, 0.3}, 1e4, 1});
+  farm.chargers.push_back({"charger", {-20.0, -4.0, 0.3}, ChargeCurve(1e4), 1});
   farm.pois.push_back({"dock", "dock", {-14.0, 2.0, -1.2}});
   const std::vector<Site> stops{{farm.chargers[0].pose, farm.chargers[0].pose, "charger"},
                                 {farm.pois[0].pose, farm.pois[0].pose, "dock"}};

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/config/visit.hpp"
+#include "core/model/soil.hpp"
+
+namespace headland {
+
+/// What driving and working draws from the battery. Paths are plan views: lengths are horizontal,
+/// and so rolling costs m g c per horizontal metre and climbing m g dz, whatever the slope.
+struct EnergyModel {
+  double mass_kg = 1000.0;
+  double payload_kg = 0.0;
+  double rotating_mass_kg = 0.0;
+  double rolling_factor_ratio = 1.0;
+  double drag_area_m2 = 0.0;
+  double turn_loss_mps = 0.0;
+  double drive_efficiency_ratio = 0.8;
+  double recuperation_efficiency_ratio = 0.0;
+  double base_power_w = 300.0;
+  double implement_power_w = 0.0;
+  double implement_draft_n = 0.0;
+
+  double total_mass() const { return mass_kg + payload_kg; }  ///< [kg]
+
+  template <class V>
+  void visit(V& v) {
+    v("mass_kg", mass_kg, config::Range{1.0, 1e5}, "Empty vehicle with its implement [kg]");
+    v("payload_kg", payload_kg, config::Range{0.0, 1e5}, "Carried: tank, crates [kg]");
+    v("rotating_mass_kg", rotating_mass_kg, config::Range{0.0, 1e5},
+      "Mass equivalent of wheels and motors when speeding up [kg]");
+    v("rolling_factor_ratio", rolling_factor_ratio, config::Range{0.1, 10.0},
+      "Rolling resistance of these wheels or tracks over the soil's table value");
+    v("drag_area_m2", drag_area_m2, config::Range{0.0, 100.0},
+      "Drag coefficient x frontal area [m2]");
+    v("turn_loss_mps", turn_loss_mps, config::Range{0.0, 10.0},
+      "Power lost in curves over the centripetal force [m/s]");
+    v("drive_efficiency_ratio", drive_efficiency_ratio, config::Range{0.05, 1.0},
+      "Work at the wheels over energy from the battery");
+    v("recuperation_efficiency_ratio", recuperation_efficiency_ratio, config::kFraction,
+      "Energy into the battery over braking work at the wheels");
+    v("base_power_w", base_power_w, config::Range{0.0, 1e6},
+      "Drawn whenever the vehicle is on: computers, pumps, fans [W]");
+    v("implement_power_w", implement_power_w, config::Range{0.0, 1e6},
+      "Drawn by the implement at work: fans, pumps, mowers [W]");
+    v("implement_draft_n", implement_draft_n, config::Range{0.0, 1e6},
+      "Pull of the implement at work [N]");
+  }
+};
+
+/// A short stretch driven at about constant slope and curvature.
+struct DriveStep {
+  double distance_m = 0.0;  ///< horizontal, >= 0
+  double rise_m = 0.0;      ///< height gained, negative downhill
+  double duration_s = 0.0;
+  double curvature_1pm = 0.0;
+  double speed_mps = 0.0;         ///< at the end of the step
+  double speed_before_mps = 0.0;  ///< at its beginning
+  SoilClass soil = SoilClass::kFirm;
+  bool working = false;  ///< implement down
+};
+
+/// Energy drawn from the battery [J] in a step; negative where more is recuperated than drawn.
+/// (SUMO / Kurczveil, Lopez, Schnieder 2014, with slip, implement and base load added.) At constant
+/// speed no step is cheaper than recuperation_efficiency * m g * rise, so that drive energies plus
+/// that potential are never negative.
+double step_energy(const EnergyModel& model, const DriveStep& step);
+
+}  // namespace headland
