@@ -11,8 +11,8 @@ double price(const Model& model, const TourLeg& leg) {
   return leg.cost + model.problem().duration_weight * leg.duration_s;
 }
 
-// The cheapest way to `to` from wherever a vehicle of this kind may come from (but for one task), by
-// any stations.
+// The cheapest way to `to` from wherever a vehicle of this kind may come from (but for one task),
+// by any stations.
 double cheapest_arrival(const Model& model, int kind_index, int to, int but_task) {
   const VehicleKind& kind = model.kind(kind_index);
   std::vector<double> from_station;  // Bellman-Ford over chains of stations

@@ -8,8 +8,8 @@ namespace headland::tour {
 namespace {
 
 CurvePoint at_energy(const CurvePoint& a, const CurvePoint& b, double energy) {
-  return {energy, a.time_s + (b.time_s - a.time_s) * (energy - a.energy_j) /
-                                 (b.energy_j - a.energy_j)};
+  return {energy,
+          a.time_s + (b.time_s - a.time_s) * (energy - a.energy_j) / (b.energy_j - a.energy_j)};
 }
 CurvePoint at_time(const CurvePoint& a, const CurvePoint& b, double time) {
   return {a.energy_j + (b.energy_j - a.energy_j) * (time - a.time_s) / (b.time_s - a.time_s), time};

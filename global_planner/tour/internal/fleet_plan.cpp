@@ -7,10 +7,10 @@
 namespace headland::tour {
 namespace {
 
-constexpr std::size_t kFirstTries = 4;   // insertions evaluated exactly
-constexpr std::size_t kMostTries = 16;   // while none of them can be driven
-constexpr int kAllPositionsUpTo = 150;   // tasks; above, only beside near tasks
-constexpr double kFinishShare = 0.1;     // of the span's price, for all finishes together
+constexpr std::size_t kFirstTries = 4;  // insertions evaluated exactly
+constexpr std::size_t kMostTries = 16;  // while none of them can be driven
+constexpr int kAllPositionsUpTo = 150;  // tasks; above, only beside near tasks
+constexpr double kFinishShare = 0.1;    // of the span's price, for all finishes together
 
 }  // namespace
 
@@ -20,8 +20,7 @@ NearTasks near_tasks(const Model& model, int count) {
     double least = kNever;
     for (int i = 0; i < model.modes(a); ++i) {
       for (int j = 0; j < model.modes(b); ++j) {
-        const TourLeg& leg =
-            model.way(0, model.mode({a, i}).exit, model.mode({b, j}).entry);
+        const TourLeg& leg = model.way(0, model.mode({a, i}).exit, model.mode({b, j}).entry);
         least = std::min(least, leg.cost + (1e-9 + model.duration_price()) * leg.duration_s +
                                     1e-9 * leg.energy_j);
       }
@@ -92,7 +91,8 @@ std::optional<double> FleetPlan::queued_cost() {
     const RouteState& r = route(v);
     if (r.visits.empty()) continue;
     auto& itinerary = itineraries_[static_cast<std::size_t>(v)];
-    if (!itinerary) itinerary = best_itinerary(model_, evaluator_.crossing(r.kind), r.kind, r.visits);
+    if (!itinerary)
+      itinerary = best_itinerary(model_, evaluator_.crossing(r.kind), r.kind, r.visits);
     if (!itinerary) return {};
     vehicles.push_back(v);
     itineraries.push_back(*itinerary);
@@ -154,7 +154,8 @@ void FleetPlan::collect_at(const RouteState& route, int vehicle, int position, i
   if (route.load + t.demand > kind.vehicle.load_capacity) return;
   const auto p = static_cast<std::size_t>(position);
   const int from = position == 0 ? kind.vehicle.start : model_.mode(route.visits[p - 1]).exit;
-  const int to = position == route.size() ? kind.vehicle.finish : model_.mode(route.visits[p]).entry;
+  const int to =
+      position == route.size() ? kind.vehicle.finish : model_.mode(route.visits[p]).entry;
   for (int mode = 0; mode < model_.modes(task); ++mode) {
     const TourMode& m = model_.mode({task, mode});
     const TourLeg& there = model_.way(route.kind, from, m.entry);

@@ -101,9 +101,8 @@ void set_charges(const Model& model, int kind_index, Items& items) {
       continue;
     }
     const ChargeFunction& function = charging[static_cast<std::size_t>(item.station)];
-    item.leave_j = model.timeless()
-                       ? std::min(kind.battery.full_j, function.points.back().energy_j)
-                       : need;
+    item.leave_j =
+        model.timeless() ? std::min(kind.battery.full_j, function.points.back().energy_j) : need;
     if (model.timeless()) {
       need = kind.battery.floor_j;
     } else if (need > arrivals[i].front().energy_j) {
@@ -180,8 +179,7 @@ class Driver {
   void spend(const TourLeg& leg) {
     route_.cost += leg.cost;
     time_ += leg.duration_s;
-    route_.lowest_j =
-        std::min({route_.lowest_j, energy_ - leg.peak_j, energy_ - leg.energy_j});
+    route_.lowest_j = std::min({route_.lowest_j, energy_ - leg.peak_j, energy_ - leg.energy_j});
     energy_ = std::min(kind_.battery.full_j, energy_ - leg.energy_j);
   }
 

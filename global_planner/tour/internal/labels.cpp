@@ -14,12 +14,11 @@ bool as_good(const Dominance& rule, const Label& better, std::span<const CurvePo
              const Label& label, std::span<const CurvePoint> other) {
   const double saved = label.cost - better.cost + rule.cost_slack;
   if (!rule.time_is_cost && saved < 0.0) return false;
-  const double lead =
-      curve.size() == 1 && other.size() == 1
-          ? (curve[0].energy_j >= other[0].energy_j - rule.energy_slack
-                 ? other[0].time_s - curve[0].time_s
-                 : -kNever)
-          : least_lead(curve, other, rule.energy_slack);
+  const double lead = curve.size() == 1 && other.size() == 1
+                          ? (curve[0].energy_j >= other[0].energy_j - rule.energy_slack
+                                 ? other[0].time_s - curve[0].time_s
+                                 : -kNever)
+                          : least_lead(curve, other, rule.energy_slack);
   if (lead == -kNever) return false;
   return rule.time_is_cost ? saved + rule.time_price * lead >= 0.0 : lead >= -rule.time_slack;
 }
@@ -107,9 +106,8 @@ void Crossing::cross(const LabelSet& from, int a, int b, double need_j, LabelSet
   for (std::size_t next = 0; stations && next < pending_.size(); ++next) {
     const Pending at = pending_[next];
     const LabelSet& here = at_station_[static_cast<std::size_t>(at.station)];
-    const auto found = std::find_if(here.labels.begin(), here.labels.end(), [&](const Label& l) {
-      return l.stations == at.label;
-    });
+    const auto found = std::find_if(here.labels.begin(), here.labels.end(),
+                                    [&](const Label& l) { return l.stations == at.label; });
     if (found == here.labels.end()) continue;  // a better one came since
     const Label label = *found;
     const std::vector<CurvePoint> curve(here.curve(label).begin(), here.curve(label).end());

@@ -15,7 +15,8 @@ struct Label {
   int first_point = 0;
   int points = 0;
   int before = -1;  ///< the label it was extended from, in the set before
-  int stations = -1;  ///< the last station on the way here, as an index into Crossing's log; -1: none
+  int stations =
+      -1;  ///< the last station on the way here, as an index into Crossing's log; -1: none
 };
 
 /// Labels at one place, none of which is as good as another in cost, time and energy at once.
@@ -99,8 +100,8 @@ class Crossing {
   std::vector<Passage> log_;
   std::vector<LabelSet> at_station_;
   std::vector<Pending> pending_;
-  EnergyCurve curve_;    // of the label at hand
-  EnergyCurve scratch_;  // for charging
+  EnergyCurve curve_;              // of the label at hand
+  EnergyCurve scratch_;            // for charging
   std::vector<int> useful_begin_;  // of each pair of sites, -1: not yet known
   std::vector<int> useful_;        // count, then stations, of each known pair
 };

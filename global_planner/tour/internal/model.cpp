@@ -35,7 +35,8 @@ VehicleKind kind_of(const TourVehicle& vehicle) {
   kind.battery = {vehicle.reserve_j - allowance, vehicle.battery_j};
   kind.start_j = std::min(vehicle.start_energy_j, vehicle.battery_j);
   kind.finish_need_j = std::max(vehicle.reserve_j, vehicle.finish_energy_j) - allowance;
-  const int stations = std::isfinite(vehicle.battery_j) ? static_cast<int>(vehicle.charging.size()) : 0;
+  const int stations =
+      std::isfinite(vehicle.battery_j) ? static_cast<int>(vehicle.charging.size()) : 0;
   for (int s = 0; s < stations; ++s) {
     if (!vehicle.charging[static_cast<std::size_t>(s)].points.empty()) kind.stations.push_back(s);
   }
@@ -54,9 +55,8 @@ Model::Model(const TourProblem& problem) : problem_(&problem) {
 void Model::group_vehicles() {
   for (int v = 0; v < static_cast<int>(problem_->vehicles.size()); ++v) {
     const TourVehicle& vehicle = problem_->vehicles[static_cast<std::size_t>(v)];
-    auto kind = std::find_if(kinds_.begin(), kinds_.end(), [&](const VehicleKind& k) {
-      return alike(k.vehicle, vehicle);
-    });
+    auto kind = std::find_if(kinds_.begin(), kinds_.end(),
+                             [&](const VehicleKind& k) { return alike(k.vehicle, vehicle); });
     if (kind == kinds_.end()) kind = kinds_.insert(kind, kind_of(vehicle));
     kind->members.push_back(v);
   }
@@ -67,9 +67,8 @@ void Model::classify_time() {
   windows_ = std::any_of(p.tasks.begin(), p.tasks.end(), [](const TourTask& t) {
     return t.earliest_s > 0.0 || t.latest_s < kNever;
   });
-  const bool deadline = std::any_of(p.vehicles.begin(), p.vehicles.end(), [](const auto& v) {
-    return v.latest_s < kNever;
-  });
+  const bool deadline = std::any_of(p.vehicles.begin(), p.vehicles.end(),
+                                    [](const auto& v) { return v.latest_s < kNever; });
   const bool one = p.vehicles.size() == 1;
   const auto fleet = static_cast<double>(std::max<std::size_t>(1, p.vehicles.size()));
   duration_price_ = p.duration_weight + p.span_weight / fleet;

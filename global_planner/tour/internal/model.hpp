@@ -36,9 +36,7 @@ class Model {
 
   const TourProblem& problem() const { return *problem_; }
   int tasks() const { return static_cast<int>(problem_->tasks.size()); }
-  const TourTask& task(int index) const {
-    return problem_->tasks[static_cast<std::size_t>(index)];
-  }
+  const TourTask& task(int index) const { return problem_->tasks[static_cast<std::size_t>(index)]; }
   const TourMode& mode(Visit visit) const {
     return task(visit.task).modes[static_cast<std::size_t>(visit.mode)];
   }

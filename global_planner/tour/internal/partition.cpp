@@ -105,8 +105,8 @@ class Layers {
     for (const Share& route : routes) {
       for (int i = 0; i < static_cast<int>(rests.size()); ++i) {
         const Share& rest = rests[static_cast<std::size_t>(i)];
-        const Share both{route.value + rest.value, std::max(route.time_s, rest.time_s),
-                         route.route, part, i};
+        const Share both{route.value + rest.value, std::max(route.time_s, rest.time_s), route.route,
+                         part, i};
         added = add_share(shares, both, span_counts_) || added;
       }
     }

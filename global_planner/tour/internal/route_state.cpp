@@ -79,8 +79,9 @@ std::optional<RouteOutcome> RouteEvaluator::propagate(const RouteState& route,
       copy_cell(route, route.cells[static_cast<std::size_t>(c)], *result);
     }
   }
-  int site = edit.first == 0 ? kind.vehicle.start
-                             : model_.mode(route.visits[static_cast<std::size_t>(edit.first - 1)]).exit;
+  int site = edit.first == 0
+                 ? kind.vehicle.start
+                 : model_.mode(route.visits[static_cast<std::size_t>(edit.first - 1)]).exit;
   const auto advance = [&](Visit visit, double need) {
     if (!step(route.kind, site, visit, need)) return false;
     const Base change = normalise(set_);
@@ -91,10 +92,11 @@ std::optional<RouteOutcome> RouteEvaluator::propagate(const RouteState& route,
   };
   // Energy needs of the new visits, from the last to the first.
   needs_.assign(edit.visits.size(), 0.0);
-  double need = route.visits.empty() ? kind.finish_need_j
-                                     : route.need_j[static_cast<std::size_t>(edit.last)];
-  int to = edit.last < route.size() ? model_.mode(route.visits[static_cast<std::size_t>(edit.last)]).entry
-                                    : kind.vehicle.finish;
+  double need =
+      route.visits.empty() ? kind.finish_need_j : route.need_j[static_cast<std::size_t>(edit.last)];
+  int to = edit.last < route.size()
+               ? model_.mode(route.visits[static_cast<std::size_t>(edit.last)]).entry
+               : kind.vehicle.finish;
   for (std::size_t i = edit.visits.size(); i-- > 0;) {
     const Visit visit = edit.visits[i];
     need = need_before(model_.way(route.kind, model_.mode(visit).exit, to), need, kind.battery);
@@ -178,7 +180,8 @@ RouteEvaluator::Base RouteEvaluator::normalise(LabelSet& set) const {
 
 bool RouteEvaluator::same(const RouteState& route, const RouteState::Cell& cell) const {
   if (static_cast<int>(set_.labels.size()) != cell.labels) return false;
-  const double energy_slack = crossings_[static_cast<std::size_t>(route.kind)].dominance().energy_slack;
+  const double energy_slack =
+      crossings_[static_cast<std::size_t>(route.kind)].dominance().energy_slack;
   for (int i = 0; i < cell.labels; ++i) {
     const Label& a = set_.labels[static_cast<std::size_t>(i)];
     const Label& b = route.labels[static_cast<std::size_t>(cell.first_label + i)];
@@ -202,9 +205,13 @@ void RouteEvaluator::load(const RouteState& route, const RouteState::Cell& cell)
 }
 
 void RouteEvaluator::store(RouteState& route, const Base& base) const {
-  RouteState::Cell cell{static_cast<int>(route.labels.size()), static_cast<int>(set_.labels.size()),
-                        static_cast<int>(route.points.size()), static_cast<int>(set_.points.size()),
-                        base.cost, base.time_s, kNever};
+  RouteState::Cell cell{static_cast<int>(route.labels.size()),
+                        static_cast<int>(set_.labels.size()),
+                        static_cast<int>(route.points.size()),
+                        static_cast<int>(set_.points.size()),
+                        base.cost,
+                        base.time_s,
+                        kNever};
   for (const Label& label : set_.labels) {
     cell.earliest_s = std::min(cell.earliest_s, base.time_s + set_.curve(label).front().time_s);
   }
@@ -225,8 +232,8 @@ void RouteEvaluator::look_ahead(RouteState& route) const {
     const Visit visit = route.visits[i];
     const TourLeg& work = model_.work(route.kind, visit);
     const TourLeg& way = model_.way(route.kind, model_.mode(visit).exit, to);
-    route.need_j[i] = need_before(work, need_before(way, route.need_j[i + 1], kind.battery),
-                                  kind.battery);
+    route.need_j[i] =
+        need_before(work, need_before(way, route.need_j[i + 1], kind.battery), kind.battery);
     route.latest_s[i] = std::min(model_.task(visit.task).latest_s + model_.time_slack(),
                                  route.latest_s[i + 1] - way.duration_s - work.duration_s);
     route.load += model_.task(visit.task).demand;

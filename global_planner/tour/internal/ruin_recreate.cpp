@@ -59,8 +59,8 @@ bool RuinRecreate::poll() {
   if (++rounds_ % kPollEvery != 0) return !stopped_;
   if (control_.stop && control_.stop()) stopped_ = true;
   if (control_.progress && best_cost_ < kNever) {
-    control_.progress(
-        std::min(1.0, static_cast<double>(rounds_) / static_cast<double>(expected_)), best_cost_);
+    control_.progress(std::min(1.0, static_cast<double>(rounds_) / static_cast<double>(expected_)),
+                      best_cost_);
   }
   return !stopped_;
 }
@@ -84,8 +84,8 @@ double RuinRecreate::absences(const std::vector<int>& tasks) const {
   return sum;
 }
 
-// Their fleet minimisation: a plan is taken over if fewer tasks stay out, or such as stayed out less
-// often before.
+// Their fleet minimisation: a plan is taken over if fewer tasks stay out, or such as stayed out
+// less often before.
 bool RuinRecreate::place_all(long rounds) {
   std::vector<int> out = missing();
   for (long i = 0; i < rounds && !out.empty() && poll(); ++i) {
@@ -94,8 +94,8 @@ bool RuinRecreate::place_all(long rounds) {
     recreate(kBlink);
     const std::vector<int> now = missing();
     const double after = plan_.cost();
-    const bool better = now.size() < out.size() || absences(now) < absences(out) ||
-                        (now == out && after <= before);
+    const bool better =
+        now.size() < out.size() || absences(now) < absences(out) || (now == out && after <= before);
     for (const int t : now) ++absent_count_[static_cast<std::size_t>(t)];
     if (after < kNever && better) {
       plan_.keep();
@@ -240,7 +240,8 @@ void RuinRecreate::sort_absent() {
                                Order::kEarly,  Order::kNarrow, Order::kNarrow};
   const Order order = kOrders[random_.index(windows ? 15 : 11)];
   for (std::size_t i = absent_.size(); i > 1; --i) {
-    std::swap(absent_[i - 1], absent_[static_cast<std::size_t>(random_.index(static_cast<int>(i)))]);
+    std::swap(absent_[i - 1],
+              absent_[static_cast<std::size_t>(random_.index(static_cast<int>(i)))]);
   }
   const auto key = [&](int t) {
     const TourTask& task = model_.task(t);

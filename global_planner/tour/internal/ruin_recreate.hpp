@@ -53,7 +53,7 @@ class RuinRecreate {
   FleetPlan& plan_;
   RandomStream random_;
   const Control& control_;
-  std::vector<double> distance_;  // from the start
+  std::vector<double> distance_;    // from the start
   std::vector<long> absent_count_;  // how often each task stayed out
   std::vector<int> absent_;
   bool stopped_ = false;
