@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "global_planner/tour/internal/bounds.hpp"
 #include "global_planner/tour/internal/completion_bound.hpp"
 #include "global_planner/tour/internal/exact_search.hpp"
 #include "global_planner/tour/internal/impossible.hpp"
@@ -78,7 +79,8 @@ class Search {
       if (model_.task(t).reward < kNever) continue;
       if (auto error = tour::why_impossible(model_, t)) return tl::unexpected(*error);
     }
-    bound_ = tour::CompletionBound(model_).whole();
+    bound_ =
+        std::max(tour::CompletionBound(model_).whole(), tour::lower_bound(problem_, options_.stop));
     if (!solve_as_order()) search();
     if (!best_) return nothing_found();
     return answer();
