@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "global_planner/tour/internal/bounds.hpp"
 #include "global_planner/tour/internal/completion_bound.hpp"
 #include "global_planner/tour/internal/exact_search.hpp"
 #include "global_planner/tour/internal/impossible.hpp"
@@ -84,12 +85,18 @@ class Search {
       if (auto error = tour::why_impossible(model_, t)) return tl::unexpected(*error);
     }
     if (model_.tasks() <= kMostPricedTasks) bound_ = tour::CompletionBound(model_).whole();
+    if (!exact()) raise_bound();
     if (!solve_as_order()) search();
     if (!best_) return nothing_found();
+    if (exact() && !proven()) raise_bound();
     return answer();
   }
 
  private:
+  void raise_bound() { bound_ = std::max(bound_, tour::lower_bound(problem_, options_.stop)); }
+  bool proven() const {
+    return best_ && bound_ >= best_->cost - 1e-9 * std::abs(best_->cost) - model_.cost_slack();
+  }
   bool one_vehicle() const { return problem_.vehicles.size() == 1; }
   bool exact() const {
     return model_.tasks() <= std::min(options_.exact_up_to_tasks, kMostExactTasks);
@@ -132,7 +139,7 @@ class Search {
     offer(routes_of(plan));
     // Ever longer anneals, so that one may end at any time.
     long length = std::min(rounds, std::max(kFirstAnneal, rounds / 8));
-    for (long left = rounds; left > 0 && !search.stopped(); length *= 2) {
+    for (long left = rounds; left > 0 && !search.stopped() && !proven(); length *= 2) {
       if (left < 2 * length) length = left;
       search.anneal(length, labels_for(length));
       left -= length;
@@ -200,9 +207,8 @@ class Search {
       solution.dropped.push_back(
           {t, impossible ? impossible->what : "costs more than it is worth beside the others"});
     }
-    const double slack = 1e-9 * std::abs(solution.cost) + model_.cost_slack();
     solution.lower_bound = std::min(bound_, solution.cost);
-    solution.optimal = bound_ >= solution.cost - slack;
+    solution.optimal = proven();
     return solution;
   }
 
