@@ -7,7 +7,6 @@
 namespace headland {
 namespace {
 
-constexpr double kGravity = 9.80665;    // [m/s2]
 constexpr double kAirDensity = 1.2041;  // at 20 degrees [kg/m3]
 constexpr double kMostSlip = 0.5;       // beyond it the vehicle is stuck
 

@@ -6,6 +6,8 @@
 
 namespace headland {
 
+inline constexpr double kGravity = 9.80665;  ///< [m/s2]
+
 /// What driving and working draws from the battery. Paths are plan views: lengths are horizontal,
 /// and so rolling costs m g c per horizontal metre and climbing m g dz, whatever the slope.
 struct EnergyModel {

@@ -129,7 +129,7 @@ bool resolve(Candidate& candidate, const TurnEnd& a, const TurnEnd& b, double ra
 
 }  // namespace
 
-CostRate cost_rate(const Vehicle& vehicle, LegKind kind, Objective objective) {
+CostRate cost_rate(const Vehicle& vehicle, LegKind kind, const CostWeights& objective) {
   return {drive_cost(vehicle, kind, 1.0, 0).value(objective),
           drive_cost(vehicle, kind, 0.0, 1).value(objective)};
 }
