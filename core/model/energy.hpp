@@ -58,7 +58,7 @@ struct DriveStep {
   double curvature_1pm = 0.0;
   double speed_mps = 0.0;         ///< at the end of the step
   double speed_before_mps = 0.0;  ///< at its beginning
-  SoilClass soil = SoilClass::kFirm;
+  SoilResistance soil = soil_resistance(SoilClass::kFirm);
   bool working = false;  ///< implement down
 };
 

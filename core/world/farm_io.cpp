@@ -214,8 +214,7 @@ Result<void> FarmBuilder::add_poi(const Feature& feature, Properties& properties
 Result<void> FarmBuilder::add_charger(const Feature& feature, Properties& properties) {
   Charger charger;
   charger.id = properties.text("id", Need::kRequired);
-  charger.curve =
-      ChargeCurve(properties.number("power_w", {1.0, 1e7}, Need::kOptional, 10000.0));
+  charger.curve = ChargeCurve(properties.number("power_w", {1.0, 1e7}, Need::kOptional, 10000.0));
   charger.slots = properties.whole("slots", Range{1.0, 1000.0}, Need::kOptional, charger.slots);
   charger.pose.yaw =
       deg_to_rad(properties.number("heading_deg", kHeadingDeg, Need::kOptional, 0.0));
