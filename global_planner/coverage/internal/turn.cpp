@@ -163,11 +163,7 @@ Path mirrored(const Path& path) {
   Path back;
   const std::vector<PathPiece>& pieces = path.pieces();
   for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
-    PathPiece turned = *piece;
-    turned.start =
-        reversed(advance(piece->start, piece->curvature, sign(piece->gear) * piece->length));
-    turned.curvature = -piece->curvature;
-    back.append(turned);
+    back.append(turned_round(*piece));
   }
   return back;
 }
