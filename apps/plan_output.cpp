@@ -20,11 +20,13 @@ double rounded(double value, int decimals) {
 }
 
 Json leg_json(const PlanLeg& leg) {
-  Json json = {
-      {"kind", config::enum_name(leg.kind)},           {"id", leg.id},
-      {"length_m", rounded(leg.cost.length_m, 3)},     {"energy_j", rounded(leg.cost.energy_j, 1)},
-      {"duration_s", rounded(leg.cost.duration_s, 2)}, {"soc_end", rounded(leg.soc_end, 5)},
-      {"begin_s", rounded(leg.begin_s, 2)}};
+  Json json = {{"kind", config::enum_name(leg.kind)},
+               {"id", leg.id},
+               {"length_m", rounded(leg.cost.length_m, 3)},
+               {"energy_j", rounded(leg.cost.energy_j, 1)},
+               {"duration_s", rounded(leg.cost.duration_s, 2)},
+               {"soc_end", rounded(leg.soc_end, 5)},
+               {"begin_s", rounded(leg.begin_s, 2)}};
   if (leg.wait_s > 0.0) json["wait_s"] = rounded(leg.wait_s, 2);
   if (leg.from_m != leg.to_m) {
     json["from_m"] = rounded(leg.from_m, 2);

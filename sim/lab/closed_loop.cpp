@@ -159,9 +159,9 @@ class Driver {
   void begin_charge(double time) {
     run_.metrics.waited_s += time - arrived_;
     ++run_.metrics.charges;
-    until_ = time + vehicle_.charge(lower(slots_.charger(charger_).curve,
-                                          plan_.vehicle.battery.acceptance()),
-                                    stop().soc_end);
+    until_ = time + vehicle_.charge(
+                        lower(slots_.charger(charger_).curve, plan_.vehicle.battery.acceptance()),
+                        stop().soc_end);
     state_ = State::kStanding;
   }
 
@@ -218,10 +218,9 @@ class Driver {
   void give_up(const char* why, double time) {
     const bool moved = !run_.trace.empty();
     const int leg = moved ? run_.trace.back().leg : 0;
-    run_.metrics.reason =
-        fmt::format("{}: {} after {:.1f} m, on leg '{}'", plan_.id, why,
-                    moved ? run_.trace.back().s_m : 0.0,
-                    plan_.legs[static_cast<std::size_t>(leg)].id);
+    run_.metrics.reason = fmt::format("{}: {} after {:.1f} m, on leg '{}'", plan_.id, why,
+                                      moved ? run_.trace.back().s_m : 0.0,
+                                      plan_.legs[static_cast<std::size_t>(leg)].id);
     run_.metrics.duration_s = time;
     state_ = State::kDone;
   }
@@ -242,8 +241,8 @@ class Driver {
       metrics.reason = fmt::format("{}: {} rows were driven with an error above {} m", plan_.id,
                                    missed_rows, config_.row_tolerance_m);
     } else if (metrics.reason.empty() && missed_visits > 0) {
-      metrics.reason = fmt::format("{}: {} places were not reached closely enough", plan_.id,
-                                   missed_visits);
+      metrics.reason =
+          fmt::format("{}: {} places were not reached closely enough", plan_.id, missed_visits);
     }
     metrics.energy_j = vehicle_.drawn_j();
   }
@@ -334,6 +333,21 @@ std::vector<int> trace_ticks(const std::vector<TraceRow>& trace, double period) 
     ticks.push_back(i);
     next = t + period - 1e-9;
   }
+  return ticks;
+}
+
+std::vector<FleetTick> fleet_ticks(const FleetRun& run, double period) {
+  std::vector<FleetTick> ticks;
+  for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
+    for (const int tick : trace_ticks(run.vehicles[v].trace, period)) {
+      ticks.push_back({v, static_cast<std::size_t>(tick)});
+    }
+  }
+  const auto time = [&run](const FleetTick& t) {
+    return run.vehicles[t.vehicle].trace[t.tick].t_s;
+  };
+  std::stable_sort(ticks.begin(), ticks.end(),
+                   [&](const FleetTick& a, const FleetTick& b) { return time(a) < time(b); });
   return ticks;
 }
 

@@ -90,6 +90,14 @@ struct FleetRun {
 /// The ticks of a trace at least `period` [s] apart, the first and last among them.
 std::vector<int> trace_ticks(const std::vector<TraceRow>& trace, double period);
 
+/// A tick of one of the vehicles.
+struct FleetTick {
+  std::size_t vehicle = 0;
+  std::size_t tick = 0;
+};
+/// All vehicles' trace_ticks, by time.
+std::vector<FleetTick> fleet_ticks(const FleetRun& run, double period);
+
 /// Called about every simulated second with the fraction done and the simulated time [s].
 using Progress = std::function<void(double fraction, double time_s)>;
 
