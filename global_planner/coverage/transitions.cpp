@@ -392,6 +392,10 @@ const Site& Transitions::site(int index) const {
   return impl_->sites[static_cast<std::size_t>(index)];
 }
 
+double Transitions::free_run(int site, bool leaving) const {
+  return impl_->port(leaving ? Impl::out_port(site) : Impl::in_port(site)).end.free_run;
+}
+
 DriveCost Transitions::cost(int from, int to) const {
   const Way& w = impl_->way(from, to);
   if (w.type == WayType::kNone) return {kInfinity, kInfinity, kInfinity};

@@ -48,6 +48,9 @@ class Transitions {
   /// Sites: ends of row r are 2 r and 2 r + 1, then the stops.
   int sites() const;
   const Site& site(int index) const;
+  /// How far the vehicle can drive straight on from a site, or come straight up to it [m]; negative
+  /// if it does not fit there.
+  double free_run(int site, bool leaving) const;
   /// Cost of the way from `from`'s departure to `to`'s arrival; infinite value where there is none.
   DriveCost cost(int from, int to) const;
   /// kTurn for one manoeuvre in a headland, kTransit for a longer way.

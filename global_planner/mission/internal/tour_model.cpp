@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "global_planner/mission/internal/free_ways.hpp"
 #include "global_planner/mission/internal/standing_places.hpp"
 
 namespace headland::mission {
@@ -64,7 +65,8 @@ Path slice(const Path& path, double from, double to) {
     if (last > first) {
       if (first > begin) {
         const double gone = first - begin;
-        piece.start = advance(piece.start, piece.curvature, sign(piece.gear) * gone);
+        piece.start = path.at(first).pose;
+        piece.curvature += piece.sharpness * gone;
       }
       piece.length = last - first;
       part.append(piece);
@@ -119,6 +121,9 @@ Result<void> TourModel::build_profiles() {
     auto ways = Transitions::build(mission_->farm, mission_->ground, mission_->rows,
                                    stops_of(*mission_), vehicle, options);
     if (!ways) return tl::unexpected<Error>(ways.error());
+    if (auto offered = offer_free_ways(*mission_, vehicle, *ways); !offered) {
+      return tl::unexpected<Error>(offered.error());
+    }
     profiles_.push_back({v, std::move(*ways), {}});
     if (auto error = row_error(profiles_.back())) return tl::unexpected<Error>(std::move(*error));
   }
