@@ -65,7 +65,7 @@ Path slice(const Path& path, double from, double to) {
     if (last > first) {
       if (first > begin) {
         const double gone = first - begin;
-        piece.start = path.at(first).pose;
+        piece.start = piece.pose_at(gone);
         piece.curvature += piece.sharpness * gone;
       }
       piece.length = last - first;
