@@ -84,6 +84,14 @@ std::optional<TerrainSample> Ground::sample(const Point2& p_map) const {
   return std::nullopt;
 }
 
+std::optional<double> Ground::height(const Point2& p_map) const {
+  if (flat()) return 0.0;
+  for (const Terrain& terrain : data_->terrains) {
+    if (auto found = terrain.height(p_map)) return found;
+  }
+  return std::nullopt;
+}
+
 Result<TerrainSample> Ground::at(const Point2& p_map) const {
   if (const auto found = sample(p_map)) return *found;
   const LatLon place = data_->frame.to_wgs84(p_map);
@@ -165,16 +173,24 @@ Attitude attitude(const TerrainSample& ground, double yaw) {
 namespace {
 
 // Walks a path in equal steps a piece, none longer than the ground's. Calls
-// `visit(piece, distance, pose)` with the pose at the end of each step; stops where it says false.
+// `visit(piece, distance, pose)` with the pose at the end of each step; ends where it says false.
 template <class Visit>
 void walk(const Ground& ground, const Path& path, Visit visit) {
   const double longest = ground.step();
   for (const PathPiece& piece : path.pieces()) {
     const int count = std::max(1, static_cast<int>(std::ceil(piece.length / longest)));
     const double distance = piece.length / count;
+    // The chords of equal steps turn by the same angle each.
+    const Pose2 turn{0.0, 0.0, piece.curvature * sign(piece.gear) * distance};
+    const Point2 ahead = turn.heading();
+    const Pose2 first = advance(piece.start, piece.curvature, sign(piece.gear) * distance);
+    Point2 chord = first.position() - piece.start.position();
+    Pose2 pose = piece.start;
     for (int k = 1; k <= count; ++k) {
-      const Pose2 pose = advance(piece.start, piece.curvature, sign(piece.gear) * k * distance);
+      pose = {pose.x + chord.x(), pose.y + chord.y(), piece.start.yaw + k * turn.yaw};
       if (!visit(piece, distance, pose)) return;
+      chord = {ahead.x() * chord.x() - ahead.y() * chord.y(),
+               ahead.y() * chord.x() + ahead.x() * chord.y()};
     }
   }
 }
@@ -195,16 +211,16 @@ Result<DriveCost> path_cost(const Vehicle& vehicle, const Ground& ground, const 
 
   Point2 before = path.start_pose().position();
   Gear gear = path.pieces().front().gear;
-  std::optional<TerrainSample> from = ground.sample(before);
+  std::optional<double> from = ground.height(before);
   if (!from) return tl::unexpected<Error>(ground.at(before).error());
   walk(ground, path, [&](const PathPiece& piece, double distance, const Pose2& pose) {
     if (piece.gear != gear) total += {0.0, vehicle.gear_change_s, standing_j, standing_j};
     gear = piece.gear;
     const Point2 here = pose.position();
-    const auto to = ground.sample(here);
+    const std::optional<double> to = ground.height(here);
     if (to) {
       step.distance_m = distance;
-      step.rise_m = to->height - from->height;
+      step.rise_m = *to - *from;
       step.duration_s = distance / speed;
       step.curvature_1pm = piece.curvature;
       if (!uniform) step.soil = soil_resistance(ground.soil(0.5 * (before + here)));

@@ -31,6 +31,7 @@ class Ground {
   /// Flat ground: height and gradient zero everywhere. Error kOffTerrain as Terrain::at.
   Result<TerrainSample> at(const Point2& p_map) const;
   std::optional<TerrainSample> sample(const Point2& p_map) const;
+  std::optional<double> height(const Point2& p_map) const;  ///< alone [m]; faster
   /// Of the last soil area (in the farm's order) that holds the point; roads are track; else firm.
   SoilClass soil(const Point2& p_map) const;
   /// The first; null on flat ground.

@@ -90,51 +90,72 @@ Terrain Terrain::hills(const HillSpec& spec, Point2 south_west, Point2 north_eas
   const Point2 size = (north_east - south_west) / cell;
   const int columns = std::max(1, static_cast<int>(std::ceil(size.x()))) + 1;
   const int rows = std::max(1, static_cast<int>(std::ceil(size.y()))) + 1;
-  // cos(a + b) from the parts of column and row: few sines for many points.
-  Eigen::MatrixXd heights = Eigen::MatrixXd::Zero(columns, rows);
-  for (const Wave& wave : waves(spec)) {
-    const Eigen::ArrayXd a =
-        wave.number.x() *
-        (south_west.x() + cell * Eigen::ArrayXd::LinSpaced(columns, 0, columns - 1));
-    const Eigen::ArrayXd b =
-        wave.phase +
-        wave.number.y() * (south_west.y() + cell * Eigen::ArrayXd::LinSpaced(rows, 0, rows - 1));
-    heights += wave.amplitude * (a.cos().matrix() * b.cos().matrix().transpose() -
-                                 a.sin().matrix() * b.sin().matrix().transpose());
+  // cos(a + b) = cos a cos b - sin a sin b, a of the column and b of the row: few sines for many
+  // points.
+  const std::vector<Wave> list = waves(spec);
+  const auto count = static_cast<Eigen::Index>(list.size());
+  Eigen::MatrixXd of_column(columns, 2 * count);
+  Eigen::MatrixXd of_row(rows, 2 * count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Wave& wave = list[static_cast<std::size_t>(k)];
+    for (int i = 0; i < columns; ++i) {
+      const double a = wave.number.x() * (south_west.x() + cell * i);
+      of_column(i, 2 * k) = wave.amplitude * std::cos(a);
+      of_column(i, 2 * k + 1) = -wave.amplitude * std::sin(a);
+    }
+    for (int i = 0; i < rows; ++i) {
+      const double b = wave.phase + wave.number.y() * (south_west.y() + cell * i);
+      of_row(i, 2 * k) = std::cos(b);
+      of_row(i, 2 * k + 1) = std::sin(b);
+    }
   }
+  const Eigen::MatrixXd heights = of_column * of_row.transpose();
   const double lowest = heights.minCoeff();
   const double range = heights.maxCoeff() - lowest;
-  std::vector<double> list;
-  list.reserve(static_cast<std::size_t>(heights.size()));
-  for (const double h : heights.reshaped()) list.push_back((h - lowest) / range * spec.relief_m);
-  return from_grid(south_west, cell, columns, rows, std::move(list));
+  std::vector<double> scaled;
+  scaled.reserve(static_cast<std::size_t>(heights.size()));
+  for (const double h : heights.reshaped()) scaled.push_back((h - lowest) / range * spec.relief_m);
+  return from_grid(south_west, cell, columns, rows, std::move(scaled));
 }
 
-std::optional<TerrainSample> Terrain::sample(const Point2& p_map) const {
-  const double u = (p_map.x() - center_.x()) / scale_;
-  const double v = (p_map.y() - center_.y()) / scale_;
-  const double column = value(to_column_, u, v);
-  const double row = value(to_row_, u, v);
+std::optional<Terrain::Place> Terrain::find(const Point2& p_map) const {
+  Place place;
+  place.u = (p_map.x() - center_.x()) / scale_;
+  place.v = (p_map.y() - center_.y()) / scale_;
+  const double column = value(to_column_, place.u, place.v);
+  const double row = value(to_row_, place.u, place.v);
   const bool inside = column >= -kEdgeTolerance && column <= columns_ - 1 + kEdgeTolerance &&
                       row >= -kEdgeTolerance && row <= rows_ - 1 + kEdgeTolerance;
   if (!inside) return std::nullopt;  // also for NaN
   const int c = std::clamp(static_cast<int>(column), 0, columns_ - 2);
   const int r = std::clamp(static_cast<int>(row), 0, rows_ - 2);
-  const double fc = column - c;
-  const double fr = row - r;
   const float* corner = heights_.data() + static_cast<std::ptrdiff_t>(r) * columns_ + c;
   const double h00 = corner[0];
   const double h10 = corner[1];
   const double h01 = corner[columns_];
   const double h11 = corner[columns_ + 1];
+  const double fc = column - c;
+  const double fr = row - r;
   const double low = h00 + fc * (h10 - h00);
   const double high = h01 + fc * (h11 - h01);
-  const double height = low + fr * (high - low);
-  if (std::isnan(height)) return std::nullopt;  // a corner without data
-  const double by_column = (1.0 - fr) * (h10 - h00) + fr * (h11 - h01);
-  const Point2 in_cells =
-      by_column * gradient(to_column_, u, v) + (high - low) * gradient(to_row_, u, v);
-  return TerrainSample{height, in_cells / scale_};
+  place.height = low + fr * (high - low);
+  if (std::isnan(place.height)) return std::nullopt;  // a corner without data
+  place.by_column = (1.0 - fr) * (h10 - h00) + fr * (h11 - h01);
+  place.by_row = high - low;
+  return place;
+}
+
+std::optional<double> Terrain::height(const Point2& p_map) const {
+  const auto place = find(p_map);
+  return place ? std::optional(place->height) : std::nullopt;
+}
+
+std::optional<TerrainSample> Terrain::sample(const Point2& p_map) const {
+  const auto place = find(p_map);
+  if (!place) return std::nullopt;
+  const Point2 per_unit = place->by_column * gradient(to_column_, place->u, place->v) +
+                          place->by_row * gradient(to_row_, place->u, place->v);
+  return TerrainSample{place->height, per_unit / scale_};
 }
 
 Result<TerrainSample> Terrain::at(const Point2& p_map) const {

@@ -50,6 +50,8 @@ class Terrain {
   Result<TerrainSample> at(const Point2& p_map) const;
   /// The same without the message: nullopt where at() fails.
   std::optional<TerrainSample> sample(const Point2& p_map) const;
+  /// The height alone [m]; faster.
+  std::optional<double> height(const Point2& p_map) const;
   double cell() const { return cell_; }  ///< spacing of grid points, the smaller one [m]
   /// Bytes that tell this terrain from others, for caches: a hash of its grid.
   std::uint64_t fingerprint() const;
@@ -60,6 +62,16 @@ class Terrain {
   /// Grid column or row: a polynomial of third degree in u and v, the map's coordinates less
   /// center_ over scale_. Coefficients of 1, u, v, u2, uv, v2, u3, u2v, uv2, v3.
   using Cubic = std::array<double, 10>;
+
+  // A point in the polynomial's coordinates, its height and the height's change per column and row.
+  struct Place {
+    double u = 0.0;
+    double v = 0.0;
+    double height = 0.0;
+    double by_column = 0.0;
+    double by_row = 0.0;
+  };
+  std::optional<Place> find(const Point2& p_map) const;
 
   int columns_ = 0;
   int rows_ = 0;
