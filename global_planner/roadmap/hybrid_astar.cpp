@@ -216,8 +216,7 @@ class Search {
 Path mirrored(const Path& path) {
   PathBuilder builder;
   for (auto piece = path.pieces().rbegin(); piece != path.pieces().rend(); ++piece) {
-    const Pose2 end = advance(piece->start, piece->curvature, sign(piece->gear) * piece->length);
-    builder.add(PathPiece{reversed(end), -piece->curvature, piece->length, piece->gear, 0});
+    builder.add(turned_round(*piece));
   }
   return builder.path();
 }
