@@ -36,6 +36,7 @@ using roadmap::PathBuilder;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSamePlace = 1e-9;  // [m, rad]
 constexpr double kStepRatio = 1.05;  // of a step over a cell's diagonal
+constexpr int kFinest = 2;           // halvings of a step
 constexpr double kTryEvery = 10.0;   // steps of distance to the goal, for one step between tries
 constexpr int kFirstLimit = 2000;    // expansions from the start, before any from the goal
 constexpr int kLimitGrowth = 4;
@@ -47,6 +48,7 @@ struct Node {
   double cost = 0.0;
   int parent = -1;
   CurvePiece piece;
+  int level = 0;  // of halving the step
   bool closed = false;
 };
 
@@ -62,7 +64,7 @@ class Search {
         // Long enough to leave the cell, and the arcs also their heading.
         step_(std::max(kStepRatio * std::numbers::sqrt2 * options.cell_m,
                        rules.radius * 2.0 * kPi / options.headings)) {
-    add(Node{from, 0.0, -1, {}, false});
+    add(Node{from, 0.0, -1, {}, 0, false});
   }
 
   /// Goes on up to so many expansions in all. True if a path has been found; then it has gone on
@@ -71,7 +73,7 @@ class Search {
     while (!open_.empty() && expansions_ < std::min(limit, enough_)) {
       const auto [bound, at] = pop();
       if (bound >= best_cost_) break;
-      if (node(at).closed || node_of_cell_[cell(node(at).pose)] != at) continue;  // outdone
+      if (node(at).closed || node_of_cell_[cell(node(at))] != at) continue;  // outdone
       node(at).closed = true;
       ++expansions_;
       if (try_due(bound - node(at).cost)) try_rest(at);
@@ -100,17 +102,19 @@ class Search {
   Node& node(int i) { return nodes_[static_cast<std::size_t>(i)]; }
   const Node& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
-  std::uint64_t cell(const Pose2& pose) const {
-    const auto part = [](double value) {
-      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(value)) + (1 << 21));
+  // Its own number for each cell of the grid of a level.
+  std::uint64_t cell(const Node& at) const {
+    const double fineness = 1 << at.level;
+    const auto part = [&](double offset) {
+      const auto count = static_cast<std::int64_t>(std::floor(offset / options_.cell_m * fineness));
+      return static_cast<std::uint64_t>(count + (1 << 23)) & ((1 << 24) - 1);
     };
-    const double turns = wrap_positive(pose.yaw) / (2.0 * kPi);
+    const double turns = wrap_positive(at.pose.yaw) / (2.0 * kPi);
+    const auto headings = static_cast<std::int64_t>(options_.headings) << at.level;
     const auto heading =
-        static_cast<std::uint64_t>(std::lround(turns * options_.headings) % options_.headings);
-    return ((part((pose.x - goal_.x) / options_.cell_m) << 22 |
-             part((pose.y - goal_.y) / options_.cell_m))
-            << 12) |
-           heading;
+        static_cast<std::uint64_t>(std::llround(turns * static_cast<double>(headings)) % headings);
+    return ((part(at.pose.x - goal_.x) << 24 | part(at.pose.y - goal_.y)) << 14 | heading) << 2 |
+           static_cast<std::uint64_t>(at.level);
   }
 
   double to_go(const Pose2& pose) {
@@ -122,7 +126,7 @@ class Search {
     if (!(bound < best_cost_)) return;
     const int at = static_cast<int>(nodes_.size());
     nodes_.push_back(reached);
-    node_of_cell_[cell(reached.pose)] = at;
+    node_of_cell_[cell(reached)] = at;
     open_.emplace_back(bound, at);
     std::push_heap(open_.begin(), open_.end(), std::greater<>());
   }
@@ -142,19 +146,32 @@ class Search {
     for (const double direction : {1.0, -1.0}) {
       if (direction < 0.0 && !rules_.reverses) break;
       for (const double turn : {0.0, 1.0, -1.0}) {
-        const Node from = node(at);
-        const CurvePiece piece{turn / rules_.radius, direction * step_};
-        const Node next{advance(from.pose, piece.curvature, piece.length),
-                        from.cost + cusp_cost(from, Join::gear_of(piece)) + rules_.cost(piece), at,
-                        piece};
-        const auto known = node_of_cell_.find(cell(next.pose));
-        if (known != node_of_cell_.end() &&
-            (node(known->second).closed || node(known->second).cost <= next.cost)) {
-          continue;
+        // Where a step does not fit, half of it may.
+        for (int level = 0; level <= kFinest; ++level) {
+          const double length = direction * step_ / (1 << level);
+          if (try_step(at, CurvePiece{turn / rules_.radius, length}, level)) break;
         }
-        if (fit_.fits(from.pose, piece)) add(next);
       }
     }
+  }
+
+  // False if the step does not fit.
+  bool try_step(int at, const CurvePiece& piece, int level) {
+    const Node& from = node(at);
+    const Node next{advance(from.pose, piece.curvature, piece.length),
+                    from.cost + cusp_cost(from, Join::gear_of(piece)) + rules_.cost(piece),
+                    at,
+                    piece,
+                    level,
+                    false};
+    const auto known = node_of_cell_.find(cell(next));
+    if (known != node_of_cell_.end() &&
+        (node(known->second).closed || node(known->second).cost <= next.cost)) {
+      return true;  // or at least of no use
+    }
+    if (!fit_.fits(from.pose, piece)) return false;
+    add(next);
+    return true;
   }
 
   // More often the nearer the goal is.
@@ -199,8 +216,7 @@ class Search {
 Path mirrored(const Path& path) {
   PathBuilder builder;
   for (auto piece = path.pieces().rbegin(); piece != path.pieces().rend(); ++piece) {
-    const Pose2 end = advance(piece->start, piece->curvature, sign(piece->gear) * piece->length);
-    builder.add(PathPiece{reversed(end), -piece->curvature, piece->length, piece->gear, 0});
+    builder.add(turned_round(*piece));
   }
   return builder.path();
 }

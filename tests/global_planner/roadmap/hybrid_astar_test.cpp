@@ -60,18 +60,23 @@ TEST(HybridAstar, AlongAStraightWayDrivesStraight) {
 }
 
 TEST(HybridAstar, ParksBetweenTwoObstacles) {
-  const Region area = yard(40.0, {box(0.0, 0.0, 18.0, 2.2), box(22.8, 0.0, 40.0, 2.2)});
-  const Path path = found(area, small_tractor(), {10.0, 4.0, 0.0}, {19.4, 1.1, 0.0});
-  EXPECT_GE(path.segments().size(), 2u) << "there is no room to drive in forwards";
-  EXPECT_LT(path.length(), 20.0);
+  // Gaps of 1.6 and of 1.4 times the vehicle's length.
+  for (const double gap : {4.8, 4.2}) {
+    const Region area = yard(40.0, {box(0.0, 0.0, 18.0, 2.2), box(18.0 + gap, 0.0, 40.0, 2.2)});
+    const Path path = found(area, small_tractor(), {10.0, 4.0, 0.0}, {19.3, 1.1, 0.0});
+    EXPECT_GE(path.segments().size(), 2u) << "there is no room to drive in forwards";
+    EXPECT_LT(path.length(), 20.0);
+  }
 }
 
 TEST(HybridAstar, DrivesThroughANarrowGate) {
-  const Region area = yard(60.0, {box(0.0, 29.0, 29.0, 31.0), box(30.9, 29.0, 60.0, 31.0)});
-  const Pose2 from{10.0, 10.0, 0.0};
-  const Pose2 to{50.0, 50.0, 3.0};
-  const Path path = found(area, small_tractor(), from, to);
-  EXPECT_LT(path.length(), 66.0);
+  // Wider than the vehicle with its margins by 5 and by 20 cm on either side.
+  for (const double width : {1.7, 2.0}) {
+    const Region area =
+        yard(60.0, {box(0.0, 29.0, 29.0, 31.0), box(29.0 + width, 29.0, 60.0, 31.0)});
+    const Path path = found(area, small_tractor(), {10.0, 10.0, 0.0}, {50.0, 50.0, 3.0});
+    EXPECT_LT(path.length(), 65.0);
+  }
 }
 
 TEST(HybridAstar, DrivesOutOfAUShapedWallAndRoundIt) {
