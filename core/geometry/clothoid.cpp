@@ -12,34 +12,45 @@ struct Node {
   double place = 0.0;  // in [-1, 1]
   double weight = 0.0;
 };
-// Gauss-Legendre quadrature of 8 points, the negative places left out.
+// Gauss-Legendre quadrature of 8 and of 4 points, the negative places left out.
 constexpr std::array<Node, 4> kNodes = {{{0.1834346424956498, 0.3626837833783620},
                                          {0.5255324099163290, 0.3137066458778873},
                                          {0.7966664774136267, 0.2223810344533745},
                                          {0.9602898564975363, 0.1012285362903763}}};
-// A panel turns no faster than by this [rad]: then those points integrate sine and cosine to 2e-12.
+constexpr std::array<Node, 2> kFewNodes = {
+    {{0.3399810435848563, 0.6521451548625461}, {0.8611363115940526, 0.3478548451374538}}};
+// A panel turns no faster than by this [rad]: then 8 points integrate sine and cosine to 2e-12.
 constexpr double kPanelTurn = 2.0;
+// So do 4 on a short stretch, that turns and bends no more than this [rad].
+constexpr double kShortTurn = 0.2;
+constexpr double kShortBend = 0.01;
 constexpr double kMostPanels = 10000.0;
 
 constexpr int kMostIterations = 10;
 constexpr double kConverged = 1e-12;  // of the chord's unit length
 constexpr double kLeastAdvance = 1e-9;
 
-/// Calls add(t, weight) for the nodes of a quadrature over [0, 1] of functions of an angle whose
-/// derivative never exceeds `most_rate` [rad].
+template <std::size_t N, typename Add>
+void integrate_panel(const std::array<Node, N>& nodes, double middle, double half, Add& add) {
+  for (const Node& node : nodes) {
+    add(middle - half * node.place, half * node.weight);
+    add(middle + half * node.place, half * node.weight);
+  }
+}
+
+/// Calls add(t, weight) for the nodes of a quadrature over [0, 1] of functions of the angle
+/// bend t^2 + rate t [rad].
 template <typename Add>
-void integrate(double most_rate, Add add) {
+void integrate(double bend, double rate, Add add) {
+  const double most_rate = std::max(std::abs(rate), std::abs(rate + 2.0 * bend));
+  if (most_rate <= kShortTurn && std::abs(bend) <= kShortBend) {
+    return integrate_panel(kFewNodes, 0.5, 0.5, add);
+  }
   // Written so that a NaN takes one panel.
   const double turns = most_rate > kPanelTurn ? std::ceil(most_rate / kPanelTurn) : 1.0;
   const int panels = static_cast<int>(std::min(turns, kMostPanels));
   const double half = 0.5 / panels;
-  for (int i = 0; i < panels; ++i) {
-    const double middle = (2 * i + 1) * half;
-    for (const Node& node : kNodes) {
-      add(middle - half * node.place, half * node.weight);
-      add(middle + half * node.place, half * node.weight);
-    }
-  }
+  for (int i = 0; i < panels; ++i) integrate_panel(kNodes, (2 * i + 1) * half, half, add);
 }
 
 /// Bertolazzi and Frego 2015, Sec. 5: the chord's unit interval with the angle
@@ -52,7 +63,7 @@ struct ChordIntegrals {
 
 ChordIntegrals chord_integrals(double a, double delta, double phi0) {
   ChordIntegrals sum;
-  integrate(std::max(std::abs(delta - a), std::abs(delta + a)), [&](double t, double weight) {
+  integrate(a, delta - a, [&](double t, double weight) {
     const double angle = (a * t + (delta - a)) * t + phi0;
     const double cosine = weight * std::cos(angle);
     sum.along += cosine;
@@ -82,7 +93,7 @@ Pose2 advance(const Pose2& from, double curvature, double sharpness, double dist
   const double rate = curvature * distance;
   const double bend = 0.5 * sharpness * distance * distance;
   Point2 sum(0.0, 0.0);
-  integrate(std::max(std::abs(rate), std::abs(rate + 2.0 * bend)), [&](double t, double weight) {
+  integrate(bend, rate, [&](double t, double weight) {
     const double yaw = from.yaw + (bend * t + rate) * t;
     sum += weight * Point2(std::cos(yaw), std::sin(yaw));
   });

@@ -172,25 +172,41 @@ Attitude attitude(const TerrainSample& ground, double yaw) {
 
 namespace {
 
+// Of the steering over a stretch of a piece, where it may go from one side to the other [1/m].
+double mean_abs_curvature(const PathPiece& piece, double from, double to) {
+  const double a = piece.curvature_at(from);
+  const double b = piece.curvature_at(to);
+  if (a * b >= 0.0) return 0.5 * std::abs(a + b);
+  return 0.5 * (a * a + b * b) / std::abs(a - b);
+}
+
 // Walks a path in equal steps a piece, none longer than the ground's. Calls
-// `visit(piece, distance, pose)` with the pose at the end of each step; ends where it says false.
+// `visit(piece, curvature, distance, pose)` with each step's mean curvature and the pose at its
+// end; stops where it says false.
 template <class Visit>
 void walk(const Ground& ground, const Path& path, Visit visit) {
   const double longest = ground.step();
   for (const PathPiece& piece : path.pieces()) {
     const int count = std::max(1, static_cast<int>(std::ceil(piece.length / longest)));
     const double distance = piece.length / count;
-    // The chords of equal steps turn by the same angle each.
-    const Pose2 turn{0.0, 0.0, piece.curvature * sign(piece.gear) * distance};
+    // The chords of equal steps of an arc turn by the same angle each.
+    const double way = sign(piece.gear);
+    const Pose2 turn{0.0, 0.0, piece.curvature * way * distance};
     const Point2 ahead = turn.heading();
-    const Pose2 first = advance(piece.start, piece.curvature, sign(piece.gear) * distance);
+    const Pose2 first = advance(piece.start, piece.curvature, way * distance);
     Point2 chord = first.position() - piece.start.position();
     Pose2 pose = piece.start;
     for (int k = 1; k <= count; ++k) {
-      pose = {pose.x + chord.x(), pose.y + chord.y(), piece.start.yaw + k * turn.yaw};
-      if (!visit(piece, distance, pose)) return;
-      chord = {ahead.x() * chord.x() - ahead.y() * chord.y(),
-               ahead.y() * chord.x() + ahead.x() * chord.y()};
+      const double before = (k - 1) * distance;
+      if (piece.sharpness == 0.0) {
+        pose = {pose.x + chord.x(), pose.y + chord.y(), piece.start.yaw + k * turn.yaw};
+        chord = {ahead.x() * chord.x() - ahead.y() * chord.y(),
+                 ahead.y() * chord.x() + ahead.x() * chord.y()};
+      } else {
+        pose = advance(pose, piece.curvature_at(before), way * piece.sharpness, way * distance);
+      }
+      const double curvature = mean_abs_curvature(piece, before, before + distance);
+      if (!visit(piece, curvature, distance, pose)) return;
     }
   }
 }
@@ -213,24 +229,25 @@ Result<DriveCost> path_cost(const Vehicle& vehicle, const Ground& ground, const 
   Gear gear = path.pieces().front().gear;
   std::optional<double> from = ground.height(before);
   if (!from) return tl::unexpected<Error>(ground.at(before).error());
-  walk(ground, path, [&](const PathPiece& piece, double distance, const Pose2& pose) {
-    if (piece.gear != gear) total += {0.0, vehicle.gear_change_s, standing_j, standing_j};
-    gear = piece.gear;
-    const Point2 here = pose.position();
-    const std::optional<double> to = ground.height(here);
-    if (to) {
-      step.distance_m = distance;
-      step.rise_m = *to - *from;
-      step.duration_s = distance / speed;
-      step.curvature_1pm = piece.curvature;
-      if (!uniform) step.soil = soil_resistance(ground.soil(0.5 * (before + here)));
-      const double drawn = step_energy(vehicle.energy, step);
-      total += {distance, step.duration_s, drawn, std::max(0.0, drawn)};
-    }
-    before = here;
-    from = to;
-    return to.has_value();
-  });
+  walk(ground, path,
+       [&](const PathPiece& piece, double curvature, double distance, const Pose2& pose) {
+         if (piece.gear != gear) total += {0.0, vehicle.gear_change_s, standing_j, standing_j};
+         gear = piece.gear;
+         const Point2 here = pose.position();
+         const std::optional<double> to = ground.height(here);
+         if (to) {
+           step.distance_m = distance;
+           step.rise_m = *to - *from;
+           step.duration_s = distance / speed;
+           step.curvature_1pm = curvature;
+           if (!uniform) step.soil = soil_resistance(ground.soil(0.5 * (before + here)));
+           const double drawn = step_energy(vehicle.energy, step);
+           total += {distance, step.duration_s, drawn, std::max(0.0, drawn)};
+         }
+         before = here;
+         from = to;
+         return to.has_value();
+       });
   if (!from) return tl::unexpected<Error>(ground.at(before).error());
   return total;
 }
@@ -260,7 +277,7 @@ std::optional<Error> check_slopes(const Vehicle& vehicle, const Ground& ground, 
   };
   if (check(path.start_pose())) {
     walk(ground, path,
-         [&check](const PathPiece&, double, const Pose2& pose) { return check(pose); });
+         [&check](const PathPiece&, double, double, const Pose2& pose) { return check(pose); });
   }
   return error;
 }
