@@ -18,12 +18,10 @@ GoalGraph::Edge no_way() { return {{kInfinity, kInfinity, kInfinity, kInfinity},
 }  // namespace
 
 WaySearch::WaySearch(const RoadGraph& graph, const TrackMaker& tracks, const Vehicle& vehicle,
-                     Objective objective)
+                     const CostWeights& objective)
     : graph_(graph), tracks_(tracks), objective_(objective) {
-  if (objective == Objective::kEnergy) {
-    potential_per_metre_ =
-        vehicle.energy.recuperation_efficiency_ratio * vehicle.energy.total_mass() * kGravity;
-  }
+  potential_per_metre_ = objective.per_j * vehicle.energy.recuperation_efficiency_ratio *
+                         vehicle.energy.total_mass() * kGravity;
   add_arcs();
 }
 

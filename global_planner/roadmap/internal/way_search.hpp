@@ -43,7 +43,7 @@ struct GoalLinks {
 class WaySearch {
  public:
   WaySearch(const RoadGraph& graph, const TrackMaker& tracks, const Vehicle& vehicle,
-            Objective objective);
+            const CostWeights& objective);
 
   /// The cheapest ways between all pairs of `sites`, joined by `links`.
   GoalGraph ways(const std::vector<Site>& sites, const GoalLinks& links) const;
@@ -67,7 +67,7 @@ class WaySearch {
 
   const RoadGraph& graph_;
   const TrackMaker& tracks_;
-  Objective objective_;
+  CostWeights objective_;
   double potential_per_metre_ = 0.0;  // [J/m]
   std::vector<int> first_arc_;        // of heading h: arcs_[first_arc_[h] .. first_arc_[h + 1])
   std::vector<Arc> arcs_;
