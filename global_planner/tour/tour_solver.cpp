@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "global_planner/tour/tour_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "global_planner/tour/internal/completion_bound.hpp"
+#include "global_planner/tour/internal/exact_search.hpp"
+#include "global_planner/tour/internal/impossible.hpp"
+#include "global_planner/tour/internal/itinerary.hpp"
+#include "global_planner/tour/internal/order.hpp"
+#include "global_planner/tour/internal/ruin_recreate.hpp"
+
+namespace headland {
+namespace {
+
+using tour::FleetPlan;
+using tour::Itinerary;
+using tour::Model;
+using tour::PlannedRoute;
+using tour::RuinRecreate;
+using tour::Visit;
+
+constexpr int kNearTasks = 100;
+constexpr int kMostExactTasks = 18;        // 2^n sets are kept
+constexpr long kExactEffort = 60'000'000;  // labels
+constexpr long kRoundsForExact = 2'000;    // of ruin and recreate, for the upper bound
+constexpr long kFirstAnneal = 20'000;
+
+struct Candidate {
+  std::vector<TourRoute> routes;
+  double cost = kNever;
+};
+
+// Routes with their charges and times; nothing if queues at stations break a window.
+std::optional<Candidate> schedule(const Model& model, const std::vector<PlannedRoute>& routes) {
+  std::vector<tour::Crossing> crossings;
+  for (int k = 0; k < static_cast<int>(model.kinds().size()); ++k) {
+    crossings.emplace_back(model, k, true);
+  }
+  std::vector<std::size_t> used(model.kinds().size(), 0);
+  std::vector<int> vehicles;
+  std::vector<Itinerary> itineraries;
+  for (const PlannedRoute& route : routes) {
+    const auto kind = static_cast<std::size_t>(route.kind);
+    auto itinerary = tour::best_itinerary(model, crossings[kind], route.kind, route.visits);
+    if (!itinerary) return {};
+    vehicles.push_back(model.kind(route.kind).members[used[kind]++]);
+    itineraries.push_back(std::move(*itinerary));
+  }
+  auto driven = tour::drive_fleet(model, vehicles, itineraries);
+  if (!driven) return {};
+  const double cost = tour::objective(model.problem(), *driven);
+  return Candidate{std::move(*driven), cost};
+}
+
+std::vector<PlannedRoute> routes_of(const FleetPlan& plan) {
+  std::vector<PlannedRoute> routes;
+  for (int v = 0; v < plan.vehicles(); ++v) {
+    const auto& route = plan.route(v);
+    if (!route.visits.empty()) routes.push_back({route.kind, route.visits});
+  }
+  return routes;
+}
+
+// The search as a whole: what is impossible, a first plan, its improvement, and the exact search
+// for few tasks.
+class Search {
+ public:
+  Search(const TourProblem& problem, const TourOptions& options)
+      : problem_(problem), options_(options), model_(problem) {}
+
+  Result<TourSolution> solve() {
+    for (int t = 0; t < model_.tasks(); ++t) {
+      if (model_.task(t).reward < kNever) continue;
+      if (auto error = tour::why_impossible(model_, t)) return tl::unexpected(*error);
+    }
+    bound_ = tour::CompletionBound(model_).whole();
+    if (!solve_as_order()) search();
+    if (!best_) return nothing_found();
+    return answer();
+  }
+
+ private:
+  bool one_vehicle() const { return problem_.vehicles.size() == 1; }
+  bool exact() const {
+    return model_.tasks() <= std::min(options_.exact_up_to_tasks, kMostExactTasks);
+  }
+
+  // One vehicle: the order that would be best without limits; done if it is the problem's answer.
+  bool solve_as_order() {
+    const bool optional = std::any_of(problem_.tasks.begin(), problem_.tasks.end(),
+                                      [](const TourTask& t) { return t.reward < kNever; });
+    if (!one_vehicle() || model_.tasks() == 0) return false;
+    const TourVehicle& vehicle = problem_.vehicles.front();
+    const bool limited = optional || std::isfinite(vehicle.battery_j) || model_.windows() ||
+                         vehicle.latest_s < kNever || vehicle.load_capacity < kNever;
+    if (limited && exact()) return false;
+    const auto order = tour::solve_order(problem_, options_);
+    if (!order) return false;
+    for (const auto& [task, mode] : order->visits) order_.push_back({task, mode});
+    if (limited) return false;
+    offer({{0, order_}});
+    bound_ = std::max(bound_, order->lower_bound);
+    return best_.has_value();
+  }
+
+  void search() {
+    const tour::NearTasks near = tour::near_tasks(model_, kNearTasks);
+    FleetPlan plan(model_, near);
+    const RuinRecreate::Control control{options_.stop, options_.progress};
+    RuinRecreate search(model_, near, plan, options_.seed, control);
+    const long rounds = budget();
+    search.expect(2 * rounds);
+    if (order_.empty() || !plan.set_route(0, order_)) search.construct();
+    plan.keep();
+    if (!search.place_all(rounds)) {
+      find_exactly();
+      return;
+    }
+    offer(routes_of(plan));
+    if (exact() && find_exactly()) return;
+    search.save_vehicles(rounds / 4);
+    offer(routes_of(plan));
+    long left = rounds;
+    for (long length = std::min(left, std::max(kFirstAnneal, rounds / 8));
+         left > 0 && !search.stopped(); length = std::min(2 * length, left)) {
+      search.anneal(left < 2 * length ? left : length);
+      left -= left < 2 * length ? left : length;
+      offer(routes_of(plan));
+    }
+    if (exact()) find_exactly();
+  }
+
+  long budget() const {
+    if (exact()) return kRoundsForExact;
+    if (options_.iterations > 0) return options_.iterations;
+    return 20'000 + 400L * model_.tasks();
+  }
+
+  // True if the best is proven.
+  bool find_exactly() {
+    if (!exact()) return false;
+    const double above = best_ ? best_->cost + model_.cost_slack() : kNever;
+    const auto found = tour::exact_search(model_, {above, kExactEffort, options_.stop});
+    if (!found.complete) return false;
+    if (!found.routes.empty() || found.cost < above) offer(found.routes);
+    bound_ = std::max(bound_, std::min(found.cost, best_ ? best_->cost : kNever));
+    return best_.has_value();
+  }
+
+  void offer(const std::vector<PlannedRoute>& routes) {
+    auto candidate = schedule(model_, routes);
+    if (candidate && candidate->cost < kNever && (!best_ || candidate->cost < best_->cost)) {
+      best_ = std::move(candidate);
+    }
+  }
+
+  tl::unexpected<Error> nothing_found() const {
+    return fail(ErrorCode::kTaskDoesNotFit, "no plan was found that does all tasks",
+                "let tasks be left out, or give more vehicles or time");
+  }
+
+  TourSolution answer() const {
+    TourSolution solution;
+    solution.routes = best_->routes;
+    solution.cost = best_->cost;
+    std::vector<char> done(problem_.tasks.size(), 0);
+    for (const TourRoute& route : solution.routes) {
+      for (const TourStop& stop : route.stops) {
+        if (stop.task >= 0) done[static_cast<std::size_t>(stop.task)] = 1;
+      }
+    }
+    for (int t = 0; t < model_.tasks(); ++t) {
+      if (done[static_cast<std::size_t>(t)]) continue;
+      const auto impossible = tour::why_impossible(model_, t);
+      solution.dropped.push_back(
+          {t, impossible ? impossible->what : "costs more than it is worth beside the others"});
+    }
+    const double slack = 1e-9 * std::abs(solution.cost) + model_.cost_slack();
+    solution.lower_bound = std::min(bound_, solution.cost);
+    solution.optimal = bound_ >= solution.cost - slack;
+    return solution;
+  }
+
+  const TourProblem& problem_;
+  const TourOptions& options_;
+  Model model_;
+  std::vector<Visit> order_;  // for a single vehicle: the order that is best without limits
+  std::optional<Candidate> best_;
+  double bound_ = -kNever;
+};
+
+}  // namespace
+
+Result<TourSolution> solve_tour(const TourProblem& problem, const TourOptions& options) {
+  return Search(problem, options).solve();
+}
+
+}  // namespace headland
