@@ -288,6 +288,7 @@ export class MapView {
 
   private paint_marks(context: CanvasRenderingContext2D, shown: Layer[], theme: Theme): void {
     const labels = new Labels(context, theme);
+    if (this.vehicles.length > 1) this.paint_starts(context, shown, theme);
     for (const f of this.features) {
       const layer = this.set.of(f);
       if (f.type !== 'Point' || !shown.includes(layer)) continue;
@@ -296,13 +297,14 @@ export class MapView {
       const text = f.name || f.id;
       if (text) labels.write(text, x + 12, y);
     }
-    if (this.vehicles.length < 2) return;
-    this.vehicles.forEach(({name, series}, i) => {
-      const layer = this.layers.find((l) => l.key === `vehicle_${i}`);
-      if (!layer || !shown.includes(layer) || series.x_m.length === 0) return;
+  }
+
+  // Where the vehicles of a fleet start, below the marks of places.
+  private paint_starts(context: CanvasRenderingContext2D, shown: Layer[], theme: Theme): void {
+    this.vehicles.forEach(({series}, i) => {
+      if (series.x_m.length === 0 || !shown.some((layer) => layer.key === `vehicle_${i}`)) return;
       const [x, y] = this.to_screen(series.x_m[0]!, series.y_m[0]!);
-      paint_mark(context, 'circle', x, y, series_color(i, theme), theme.get('map-ground'));
-      labels.write(name, x + 12, y);
+      paint_dot(context, x, y, series_color(i, theme), theme);
     });
   }
 

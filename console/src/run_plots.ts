@@ -61,7 +61,7 @@ export function run_plots(vehicles: Vehicle[], link: Link, theme: () => Theme): 
   const shared = shared_by(link);
   const several = vehicles.length > 1;
   const plots = columns(vehicles).filter((c) => vehicles.some((v) => v.series[c.key].length > 1)).map((c) => new Plot(
-      plot_data(c, vehicles), {...c.options, height: several ? 200 : 150, left: 36}, shared, theme));
+      plot_data(c, vehicles), {...c.options, height: several ? 240 : 150, left: 36}, shared, theme));
   if (plots.length === 0) return null;
   const reset = element('button', {type: 'button', class: 'quiet', hidden: true, click: () => link.set('range', null)},
                         'Show all');

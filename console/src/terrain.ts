@@ -63,8 +63,8 @@ export function contour(heights: Float32Array, columns: number, rows: number, le
 
 /// Colour of a height between lowest (0) and highest (1) in a light.
 function tint(t: number, lit: number, dark: boolean): [number, number, number] {
-  const lightness = dark ? (0.25 + 0.12 * t) * (0.35 + 0.65 * lit) : Math.min(0.985, (0.86 + 0.06 * t) * (0.62 + 0.38 * lit));
-  return oklch_rgb(lightness, dark ? 0.03 : 0.045, 145 - 75 * t);
+  const lightness = dark ? (0.27 + 0.17 * t) * (0.4 + 0.6 * lit) : Math.min(0.985, (0.86 + 0.06 * t) * (0.62 + 0.38 * lit));
+  return oklch_rgb(lightness, dark ? 0.04 : 0.045, 145 - 75 * t);
 }
 
 export function tint_text(t: number, dark: boolean): string {

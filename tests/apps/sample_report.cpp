@@ -146,7 +146,7 @@ void add_series(Report& report, const Legs& legs, int samples) {
   }
 }
 
-// Works every third row from `first`, and charges whenever it comes down to 30 %.
+// Works every third row from `first`, and charges whenever it comes down to 35 %.
 void add_vehicle(Report& report, int first, int rows, double start_soc) {
   const int number = static_cast<int>(report.vehicles.size());
   ReportVehicle vehicle{.name = fmt::format("t{}", number + 1), .reserve_soc = 0.2};
@@ -183,7 +183,7 @@ void add_vehicle(Report& report, int first, int rows, double start_soc) {
   for (int row = first; row < rows; row += 3) {
     Polyline line = row_line(row);
     if ((row - first) / 3 % 2 == 1) std::swap(line.front(), line.back());
-    if (soc < 0.3) {
+    if (soc < 0.35) {
       drive({at, charger}, "transit", "to Charger 1");
       vehicle.stops.push_back({s, soc, 0.9, "Charger 1"});
       report.why.push_back({number, leg,
