@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -45,8 +46,9 @@ struct DriveCost {
     return *this;
   }
   friend DriveCost operator+(DriveCost a, const DriveCost& b) { return a += b; }
-  /// The one number that is minimised.
+  /// The one number that is minimised; infinite where there is no way.
   double value(const CostWeights& weights) const {
+    if (std::isinf(length_m)) return length_m;
     return weights.per_j * energy_j + weights.per_s * duration_s + weights.per_m * length_m;
   }
 };
