@@ -60,9 +60,9 @@ struct Attitude {
 Attitude attitude(const TerrainSample& ground, double yaw);
 
 /// What driving `path` as `kind` costs on that ground, in steps no longer than Ground::step();
-/// closed form on uniform ground. Changes of gear are standing time. Heights are taken at the ends
-/// of steps, so that the potential energy depends on the path's ends alone.
-/// Error kOffTerrain names the first point off the terrain. About 50 ns a step.
+/// closed form on uniform ground. Changes of gear are standing time. Heights are
+/// taken at the ends of steps, so that the potential energy depends on the path's ends alone. Error
+/// kOffTerrain names the first point off the terrain. About 50 ns a step.
 Result<DriveCost> path_cost(const Vehicle& vehicle, const Ground& ground, const Path& path,
                             LegKind kind);
 
