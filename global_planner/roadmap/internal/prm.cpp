@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 #include <utility>
 
 #include <ompl/base/MotionValidator.h>
@@ -14,6 +16,7 @@
 #include <ompl/geometric/planners/prm/PRM.h>
 #include <ompl/util/Console.h>
 
+#include "core/base/error.hpp"
 #include "core/base/random.hpp"
 
 // The roadmap is undirected, as OMPL's is: a node is a place with a direction, which a vehicle may
@@ -25,9 +28,15 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 using State = ob::SE2StateSpace::StateType;
 
+constexpr std::int64_t kDrawsPerSample = 4;
 constexpr std::size_t kNeighbors = 16;  // tried for each new node: those that a curve can join
 constexpr std::size_t kFirstLook = 32;  // nearest nodes looked at for them
 constexpr std::size_t kLastLook = 256;
+constexpr int kMissesOfAKind = 200;
+// Of the nodes: those around corners of the border, and where those along the border begin.
+constexpr double kAtCorners = 0.25;
+constexpr double kAlongBorder = 0.6;
+constexpr double kCornerReach = 1.5;         // [turning radii]
 constexpr std::int64_t kMostMisses = 20000;  // draws in a row that do not fit: there is no room
 
 Pose2 pose_of(const ob::State* state) {
@@ -68,12 +77,6 @@ Joint joint(const Pose2& from, const Pose2& to) {
   return {chord.dot(from.heading()) < 0.0, chord.dot(to.heading()) < 0.0};
 }
 
-std::optional<Track> join_nodes(const TrackMaker& tracks, const Pose2& from, const Pose2& to) {
-  const Joint j = joint(from, to);
-  return tracks.join(j.from_looks_back ? reversed(from) : from,
-                     j.to_looks_back ? reversed(to) : to);
-}
-
 /// Asked by the sampler alone: does the vehicle fit in either heading?
 class FreeStates : public ob::StateValidityChecker {
  public:
@@ -81,8 +84,7 @@ class FreeStates : public ob::StateValidityChecker {
       : ob::StateValidityChecker(space), tracks_(tracks), margin_(margin) {}
   bool isValid(const ob::State* state) const override {
     const Pose2 pose = pose_of(state);
-    return tracks_.drivable().contains(pose.position()) &&
-           (tracks_.fits(pose, margin_) || tracks_.fits(reversed(pose), margin_));
+    return tracks_.fits(pose, margin_) || tracks_.fits(reversed(pose), margin_);
   }
 
  private:
@@ -90,75 +92,163 @@ class FreeStates : public ob::StateValidityChecker {
   double margin_;
 };
 
-/// Draws places in the box around the area and directions from our own stream: OMPL's generators
-/// share a global seed.
+/// Direction [rad] of the border nearest to a point.
+double border_direction(const Region& region, const Point2& p) {
+  double least = std::numeric_limits<double>::infinity();
+  Point2 along(1.0, 0.0);
+  const auto look = [&](const Polyline& ring) {
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+      const Point2& a = ring[i];
+      const Point2& b = ring[(i + 1) % ring.size()];
+      const double distance = distance_to_segment(p, a, b);
+      if (distance >= least) continue;
+      least = distance;
+      along = b - a;
+    }
+  };
+  for (const Polygon& polygon : region.polygons()) {
+    look(polygon.outer);
+    std::for_each(polygon.holes.begin(), polygon.holes.end(), look);
+  }
+  return std::atan2(along.y(), along.x());
+}
+
+/// Draws places and directions: around the border's corners, where ways bend; anywhere in the box
+/// around the area; and anywhere along the nearest border, as roads and headlands are driven. From
+/// our own stream: OMPL's generators share a global seed.
 class Sampler : public ob::ValidStateSampler {
  public:
-  Sampler(const ob::SpaceInformation* space, RandomStream& random, std::int64_t& draws)
-      : ob::ValidStateSampler(space), random_(random), draws_(draws) {}
+  Sampler(const ob::SpaceInformation* space, const TrackMaker& tracks, RandomStream& random,
+          std::int64_t& draws)
+      : ob::ValidStateSampler(space), tracks_(tracks), random_(random), draws_(draws) {
+    for (const Polygon& polygon : tracks.drivable().polygons()) {
+      corners_.insert(corners_.end(), polygon.outer.begin(), polygon.outer.end());
+      for (const Polyline& hole : polygon.holes) {
+        corners_.insert(corners_.end(), hole.begin(), hole.end());
+      }
+    }
+  }
 
   bool sample(ob::State* state) override {
-    const auto& bounds = si_->getStateSpace()->as<ob::SE2StateSpace>()->getBounds();
-    const double x = random_.uniform(bounds.low[0], bounds.high[0]);
-    const double y = random_.uniform(bounds.low[1], bounds.high[1]);
-    set(state, {x, y, random_.uniform(0.0, kPi)});
+    // A kind is drawn for each node, not for each draw: corners are easier to hit than roads.
+    const double new_kind = random_.uniform();
+    const double u = random_.uniform();
+    const double v = random_.uniform();
+    const double turn = random_.uniform(0.0, kPi);
+    if (misses_ % kMissesOfAKind == 0) kind_ = new_kind;
     ++draws_;
-    return si_->isValid(state);
+    ++misses_;
+    const Pose2 pose = drawn(u, v, turn);
+    if (!tracks_.drivable().contains(pose.position())) return false;
+    set(state, pose);
+    if (kind_ >= kAlongBorder) {
+      const double along = border_direction(tracks_.drivable(), pose.position());
+      set(state, {pose.x, pose.y, along});
+    }
+    if (!si_->isValid(state)) return false;
+    misses_ = 0;
+    return true;
   }
   bool sampleNear(ob::State*, const ob::State*, double) override { return false; }
 
  private:
+  Pose2 drawn(double u, double v, double turn) const {
+    if (kind_ < kAtCorners) {
+      const auto i =
+          static_cast<std::size_t>(kind_ / kAtCorners * static_cast<double>(corners_.size()));
+      const double reach = kCornerReach * tracks_.radius() * std::sqrt(u);
+      return {corners_[i].x() + reach * std::cos(2.0 * kPi * v),
+              corners_[i].y() + reach * std::sin(2.0 * kPi * v), turn};
+    }
+    const auto& bounds = si_->getStateSpace()->as<ob::SE2StateSpace>()->getBounds();
+    return {bounds.low[0] + u * (bounds.high[0] - bounds.low[0]),
+            bounds.low[1] + v * (bounds.high[1] - bounds.low[1]), turn};
+  }
+
+  const TrackMaker& tracks_;
   RandomStream& random_;
   std::int64_t& draws_;
+  std::vector<Point2> corners_;
+  double kind_ = 0.0;
+  int misses_ = 0;  // since the last node
 };
 
-/// Finds a drivable track for each motion that the PRM tries, and keeps it: the PRM makes an edge
-/// of each motion that passes, in the same order.
+/// Finds a drivable track for a motion. It remembers those of the node at hand, which are asked for
+/// again when the PRM makes edges of them.
 class DrivableMotions : public ob::MotionValidator {
  public:
-  DrivableMotions(const ob::SpaceInformationPtr& space, const TrackMaker& tracks, double margin,
-                  std::vector<RoadEdge>& edges)
-      : ob::MotionValidator(space), tracks_(tracks), margin_(margin), edges_(edges) {}
+  DrivableMotions(const ob::SpaceInformationPtr& space, const TrackMaker& tracks, double margin)
+      : ob::MotionValidator(space), tracks_(tracks), margin_(margin) {}
 
   bool checkMotion(const ob::State* from, const ob::State* to) const override {
-    const auto track = join_nodes(tracks_, pose_of(from), pose_of(to));
-    if (!track) return false;
-    RoadEdge edge;
-    edge.track = *track;
-    edge.open = tracks_.open_ways(*track, margin_);
-    if (!edge.open.any()) return false;
-    const auto forwards = tracks_.cost(*track);
-    const auto backwards = tracks_.cost(*track, true);
-    if (!forwards || !backwards) return false;
-    edge.forwards = *forwards;
-    edge.backwards = *backwards;
-    edges_.push_back(edge);
-    return true;
+    if (known(from, to)) return true;
+    const auto edge = find(pose_of(from), pose_of(to));
+    if (edge) known_.push_back({from, to, *edge});
+    return edge.has_value();
   }
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>&) const override {
     return checkMotion(from, to);
   }
+  /// Of a motion that passed since the last forget().
+  const RoadEdge* known(const ob::State* from, const ob::State* to) const {
+    for (const Known& motion : known_) {
+      if (motion.from == from && motion.to == to) return &motion.edge;
+    }
+    return nullptr;
+  }
+  void forget() { known_.clear(); }
 
  private:
+  struct Known {
+    const ob::State* from;
+    const ob::State* to;
+    RoadEdge edge;
+  };
+
+  std::optional<RoadEdge> find(const Pose2& from, const Pose2& to) const {
+    const Joint j = joint(from, to);
+    const auto track = tracks_.join(j.from_looks_back ? reversed(from) : from,
+                                    j.to_looks_back ? reversed(to) : to);
+    if (!track) return std::nullopt;
+    RoadEdge edge;
+    edge.track = *track;
+    edge.open = tracks_.open_ways(*track, margin_);
+    if (!edge.open.any()) return std::nullopt;
+    const auto forwards = tracks_.cost(*track);
+    const auto backwards = tracks_.cost(*track, true);
+    if (!forwards || !backwards) return std::nullopt;
+    edge.forwards = *forwards;
+    edge.backwards = *backwards;
+    return edge;
+  }
+
   const TrackMaker& tracks_;
   double margin_;
-  std::vector<RoadEdge>& edges_;
+  mutable std::vector<Known> known_;
 };
 
-/// The energy of the edge just made, the mean of its two ways [J].
+/// Energy of an edge, the mean of its two ways [J]. The PRM asks once, when it makes the edge,
+/// which is then kept in the PRM's own order.
 class EdgeEnergy : public ob::OptimizationObjective {
  public:
-  EdgeEnergy(const ob::SpaceInformationPtr& space, const std::vector<RoadEdge>& edges)
-      : ob::OptimizationObjective(space), edges_(edges) {}
+  EdgeEnergy(const ob::SpaceInformationPtr& space, const DrivableMotions& motions,
+             std::vector<RoadEdge>& edges)
+      : ob::OptimizationObjective(space), motions_(motions), edges_(edges) {}
   ob::Cost stateCost(const ob::State*) const override { return ob::Cost(0.0); }
-  ob::Cost motionCost(const ob::State*, const ob::State*) const override {
-    const RoadEdge& edge = edges_.back();
+  ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
+    const RoadEdge* edge = motions_.known(from, to);
+    HEADLAND_CHECK(edge != nullptr, "the cost of a motion that was not checked");
+    edges_.push_back(*edge);
+    return of(*edge);
+  }
+  static ob::Cost of(const RoadEdge& edge) {
     return ob::Cost(0.5 * (edge.forwards.energy_j + edge.backwards.energy_j));
   }
 
  private:
-  const std::vector<RoadEdge>& edges_;
+  const DrivableMotions& motions_;
+  std::vector<RoadEdge>& edges_;
 };
 
 /// OMPL's PRM, that can also go on with an earlier graph.
@@ -180,28 +270,28 @@ class Prm : public og::PRM {
     for (const RoadEdge& edge : graph.edges) {
       const auto from = static_cast<Vertex>(edge.from / 2);
       const auto to = static_cast<Vertex>(edge.to / 2);
-      const ob::Cost weight(0.5 * (edge.forwards.energy_j + edge.backwards.energy_j));
-      boost::add_edge(from, to, Graph::edge_property_type(weight), g_);
+      boost::add_edge(from, to, Graph::edge_property_type(EdgeEnergy::of(edge)), g_);
       uniteComponents(from, to);
     }
   }
 
-  Pose2 pose(Vertex v) const { return pose_of(boost::get(vertex_state_t(), g_, v)); }
+  const ob::State* state(Vertex v) const { return boost::get(vertex_state_t(), g_, v); }
 };
 
-/// Connection strategy: the nearest nodes that a curve can join, whatever lies in between.
-class JoinableNeighbors {
+/// Connection strategy: the nearest nodes that a drivable track joins to the new one.
+class DrivableNeighbors {
  public:
-  JoinableNeighbors(Prm& prm, const TrackMaker& tracks) : prm_(prm), tracks_(tracks) {}
+  DrivableNeighbors(Prm& prm, DrivableMotions& motions) : prm_(prm), motions_(motions) {}
 
   const std::vector<Prm::Vertex>& operator()(Prm::Vertex v) {
     found_.clear();
+    motions_.forget();
     std::size_t looked = 0;
     for (std::size_t look = kFirstLook; look <= kLastLook; look *= 2) {
       prm_.getNearestNeighbors()->nearestK(v, look, near_);
       for (; looked < near_.size() && found_.size() < kNeighbors; ++looked) {
         const Prm::Vertex u = near_[looked];
-        if (u != v && join_nodes(tracks_, prm_.pose(u), prm_.pose(v))) found_.push_back(u);
+        if (motions_.checkMotion(prm_.state(u), prm_.state(v))) found_.push_back(u);
       }
       if (found_.size() >= kNeighbors || near_.size() < look) break;
     }
@@ -210,7 +300,7 @@ class JoinableNeighbors {
 
  private:
   Prm& prm_;
-  const TrackMaker& tracks_;
+  DrivableMotions& motions_;
   std::vector<Prm::Vertex> near_;
   std::vector<Prm::Vertex> found_;
 };
@@ -247,7 +337,7 @@ ob::RealVectorBounds box_around(const Region& region) {
 /// Takes nodes, and the ends of new edges, from the PRM.
 void take_over(const Prm& prm, RoadGraph& graph) {
   for (auto v = graph.nodes.size(); v < prm.milestoneCount(); ++v) {
-    graph.nodes.push_back(prm.pose(v));
+    graph.nodes.push_back(pose_of(prm.state(v)));
   }
   std::size_t i = 0;
   const auto [first, last] = boost::edges(prm.getRoadmap());
@@ -275,23 +365,24 @@ void grow(RoadGraph& graph, const TrackMaker& tracks, int samples, std::uint64_t
   if (full || tracks.drivable().polygons().empty()) return;
   const QuietOmpl quiet;
   RandomStream random(seed, "roadmap");
-  for (std::int64_t i = 0; i < 3 * graph.draws; ++i) random.uniform();
+  for (std::int64_t i = 0; i < kDrawsPerSample * graph.draws; ++i) random.uniform();
 
   const auto space = std::make_shared<DirectionSpace>(tracks.radius());
   space->setBounds(box_around(tracks.drivable()));
   const auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker(std::make_shared<FreeStates>(information, tracks, margin));
-  information->setMotionValidator(
-      std::make_shared<DrivableMotions>(information, tracks, margin, graph.edges));
+  const auto motions = std::make_shared<DrivableMotions>(information, tracks, margin);
+  information->setMotionValidator(motions);
   information->setValidStateSamplerAllocator([&](const ob::SpaceInformation* si) {
-    return std::make_shared<Sampler>(si, random, graph.draws);
+    return std::make_shared<Sampler>(si, tracks, random, graph.draws);
   });
   const auto problem = std::make_shared<ob::ProblemDefinition>(information);
-  problem->setOptimizationObjective(std::make_shared<EdgeEnergy>(information, graph.edges));
+  problem->setOptimizationObjective(
+      std::make_shared<EdgeEnergy>(information, *motions, graph.edges));
 
   Prm prm(information);
   prm.setProblemDefinition(problem);
-  prm.setConnectionStrategy(JoinableNeighbors(prm, tracks));
+  prm.setConnectionStrategy(DrivableNeighbors(prm, *motions));
   prm.setup();
   prm.restore(graph);
   unsigned long nodes = 0;

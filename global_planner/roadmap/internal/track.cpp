@@ -9,10 +9,10 @@
 namespace headland::internal {
 namespace {
 
-constexpr double kStep = 0.25;         // [m]
-constexpr double kStepsPerCell = 4.0;  // of the terrain
+constexpr double kStep = 0.25;  // [m]
 // The slope changes along a step, and other checks sample other points.
 constexpr double kSlopeSlack = 0.25;   // [deg]
+constexpr double kCoarse = 8.0;        // steps of the first look at a track
 constexpr double kLongestRatio = 2.0;  // of a clothoid to its chord
 
 }  // namespace
@@ -39,10 +39,11 @@ TrackMaker::TrackMaker(const Region& drivable, const Ground& ground, const Vehic
       vehicle_(vehicle),
       curve_(curve),
       radius_(vehicle.turning_radius()),
-      step_(ground.flat() ? kStep : std::min(kStep, 2.0 * ground.step() / kStepsPerCell)),
+      step_(ground.flat() ? kStep : std::min(kStep, ground.step())),
+      slope_stride_(ground.flat() ? 1 : static_cast<int>(std::min(ground.step(), 100.0) / step_)),
       both_(vehicle.footprint),
-      most_pitch_(deg_to_rad(vehicle.max_pitch_deg - kSlopeSlack)),
-      most_roll_(deg_to_rad(vehicle.max_roll_deg - kSlopeSlack)) {
+      most_pitch_(std::tan(deg_to_rad(vehicle.max_pitch_deg - kSlopeSlack))),
+      most_roll_(std::tan(deg_to_rad(vehicle.max_roll_deg - kSlopeSlack))) {
   both_.front_m = std::max(both_.front_m, both_.rear_m);
   both_.rear_m = both_.front_m;
   // Every point of the outline turns about a centre no further away than this: the sagitta.
@@ -70,36 +71,57 @@ std::optional<Track> TrackMaker::join(const Pose2& from, const Pose2& to, EdgeCu
   return track;
 }
 
-bool TrackMaker::level_enough(const Pose2& pose) const {
-  if (ground_.flat()) return true;
-  const auto here = ground_.sample(pose.position());
+bool TrackMaker::level_enough(const Point2& place, const Point2& heading) const {
+  const auto here = ground_.sample(place);
   if (!here) return false;
-  const Attitude tilt = attitude(*here, pose.yaw);
-  return std::abs(tilt.pitch) <= most_pitch_ && std::abs(tilt.roll) <= most_roll_;
+  const Point2 left(-heading.y(), heading.x());
+  return std::abs(here->gradient.dot(heading)) <= most_pitch_ &&
+         std::abs(here->gradient.dot(left)) <= most_roll_;
 }
 
 bool TrackMaker::fits(const Pose2& pose, double margin) const {
-  return drivable_.contains(pose, vehicle_.footprint, margin) && level_enough(pose);
+  return drivable_.contains(pose, vehicle_.footprint, margin) &&
+         level_enough(pose.position(), pose.heading());
+}
+
+// Calls visit(pose, heading) at equal steps of a piece, none longer than `longest` [m], as long as
+// it says true. Simpson's rule over a step: to a micrometre.
+template <class Visit>
+void TrackMaker::walk(const PathPiece& piece, double longest, Visit visit) {
+  const int count = std::max(1, static_cast<int>(std::ceil(piece.length / longest)));
+  const double step = piece.length / count;
+  const auto yaw_at = [&piece](double s) {
+    return piece.start.yaw + (piece.curvature + 0.5 * piece.sharpness * s) * s;
+  };
+  Pose2 pose = piece.start;
+  Point2 heading = pose.heading();
+  for (int k = 0; visit(pose, heading) && k < count; ++k) {
+    const Pose2 middle{0.0, 0.0, yaw_at((k + 0.5) * step)};
+    const Pose2 end{0.0, 0.0, yaw_at((k + 1) * step)};
+    const Point2 before = heading;
+    heading = end.heading();
+    const Point2 place = pose.position() + step / 6.0 * (before + 4.0 * middle.heading() + heading);
+    pose = {place.x(), place.y(), end.yaw};
+  }
 }
 
 Ways TrackMaker::open_ways(const Track& track, double margin, Ways wanted) const {
   const double kept = margin + sweep_;
   Ways open = wanted;
-  const auto check = [&](const Pose2& pose) {
-    if (!level_enough(pose)) open = {false, false};
-    if (!open.any() || drivable_.contains(pose, both_, kept)) return;
-    open.forwards = open.forwards && drivable_.contains(pose, vehicle_.footprint, kept);
-    open.backwards = open.backwards && drivable_.contains(reversed(pose), vehicle_.footprint, kept);
-  };
-  for (int i = 0; i < track.count && open.any(); ++i) {
-    const PathPiece& piece = track.pieces[static_cast<std::size_t>(i)];
-    const int count = static_cast<int>(std::ceil(piece.length / step_));
-    const double step = piece.length / count;
-    Pose2 pose = piece.start;
-    check(pose);
-    for (int k = 0; k < count && open.any(); ++k) {
-      pose = advance(pose, piece.curvature_at(k * step), piece.sharpness, step);
-      check(pose);
+  // Most tracks that do not fit are found out by a coarse look.
+  for (const double longest : {kCoarse * step_, step_}) {
+    for (int i = 0; i < track.count && open.any(); ++i) {
+      int k = 0;
+      walk(track.pieces[static_cast<std::size_t>(i)], longest,
+           [&](const Pose2& pose, const Point2& heading) {
+             if (k++ % slope_stride_ == 0 && !level_enough(pose.position(), heading))
+               open = {false, false};
+             if (!open.any() || drivable_.contains(pose, both_, kept)) return open.any();
+             open.forwards = open.forwards && drivable_.contains(pose, vehicle_.footprint, kept);
+             open.backwards =
+                 open.backwards && drivable_.contains(reversed(pose), vehicle_.footprint, kept);
+             return open.any();
+           });
     }
   }
   return open;

@@ -54,7 +54,9 @@ class TrackMaker {
   double radius() const { return radius_; }  ///< [m]
 
  private:
-  bool level_enough(const Pose2& pose) const;
+  bool level_enough(const Point2& place, const Point2& heading) const;
+  template <class Visit>
+  static void walk(const PathPiece& piece, double longest, Visit visit);
 
   const Region& drivable_;
   const Ground& ground_;
@@ -62,10 +64,11 @@ class TrackMaker {
   EdgeCurve curve_;
   double radius_;
   double step_;        // between samples of a track [m]
+  int slope_stride_;   // samples from one look at the slope to the next
   double sweep_;       // what the outline may stray between two samples [m]
   Footprint both_;     // the outline in both headings
-  double most_pitch_;  // [rad]
-  double most_roll_;   // [rad]
+  double most_pitch_;  // tangent
+  double most_roll_;   // tangent
 };
 
 }  // namespace headland::internal
