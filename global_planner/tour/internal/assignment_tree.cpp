@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;  // of a bound: what sums of prices may be off by
+// Patching takes longer than an assignment's repair, and seldom finds more deep in the tree.
+constexpr long kPatched = 2000;
+constexpr long kPatchedEvery = 50;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -130,6 +133,7 @@ class Search {
   }
   // Bounds of this or more hold no better tour.
   double worth() const {
+    if (!(answer_.cost < kInfinity)) return kInfinity;
     if (limits_.whole_costs) return answer_.cost - 1.0 + 1e-6 * (1.0 + 1e-3 * answer_.cost);
     return answer_.cost - 2.0 * kRounding * std::abs(answer_.cost);
   }
@@ -147,8 +151,11 @@ class Search {
     node->number = count_;
     node->bound = node->assignment.bound() + priced_.offset;
     if (node->bound >= worth()) return;
-    const Successors tour = patched(costs_, node->assignment.column_of);
-    if (!tour.empty()) adopt(tour);
+    if (count_ <= kPatched || count_ % kPatchedEvery == 0 ||
+        cycles_of(node->assignment.column_of).size() == 1) {
+      const Successors tour = patched(costs_, node->assignment.column_of);
+      if (!tour.empty()) adopt(tour);
+    }
     open_.push(std::move(node));
   }
 
@@ -183,11 +190,12 @@ class Search {
     });
   }
 
-  // Child k leaves out the k-th free arc of the cycle and keeps those before it.
+  // Child k leaves out the k-th free arc of the cycle and keeps those before it. That is everything
+  // but the cycle itself, which no tour contains, or which is a tour and was adopted when its node
+  // was added (and may still be dearer than its bound, where it leaves a priced set twice).
   void branch(const NodePtr& node) {
     restrict_to(*node, restricted_, fixed_);
     const std::vector<int> cycle = cycle_to_break(*node, fixed_);
-    if (std::ssize(cycle) == costs_.size) return;  // a tour: adopted when it was added
     std::vector<Arc> kept;
     for (const int from : cycle) {
       if (fixed_[at(from)]) continue;

@@ -16,7 +16,7 @@ constexpr std::size_t kNeighbours = 10;
 // Settled by trial on TSPLIB's instances, each part a few seconds at most. A node of the tree takes
 // a few n^2 steps, an assignment n^3 at worst.
 constexpr double kFirstTreeSteps = 5e8;
-constexpr double kTreeSteps = 5e9;
+constexpr double kTreeSteps = 4e9;
 constexpr double kPriceSteps = 3e9;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -40,7 +40,9 @@ bool whole(const CostMatrix& costs) {
 }
 
 // For each end the ends that cost least beyond the assignment's prices, cheapest way first.
-Neighbours priced_neighbours(const CostMatrix& costs, const Assignment& prices) {
+Neighbours priced_neighbours(const CostMatrix& costs, const PricedCosts& priced) {
+  Assignment prices;
+  assign(priced.costs, prices);
   const auto n = at(costs.size);
   Neighbours neighbours(2 * n);
   std::vector<int> nodes(n);
@@ -50,7 +52,8 @@ Neighbours priced_neighbours(const CostMatrix& costs, const Assignment& prices) 
         return leaving ? costs.at(node, other) : costs.at(other, node);
       };
       const auto reduced = [&](int other) {
-        return cost(other) - (leaving ? prices.column_price : prices.row_price)[at(other)];
+        return (leaving ? priced.costs.at(node, other) : priced.costs.at(other, node)) -
+               (leaving ? prices.column_price : prices.row_price)[at(other)];
       };
       std::iota(nodes.begin(), nodes.end(), 0);
       const auto last = nodes.begin() + static_cast<std::ptrdiff_t>(std::min(kNeighbours, n));
@@ -70,15 +73,14 @@ Neighbours priced_neighbours(const CostMatrix& costs, const Assignment& prices) 
 }
 
 Successors improved(const RowTourProblem& problem, const Neighbours& neighbours,
-                    const Successors& known, double stop_cost, const OneWaySearch& search) {
+                    const Successors& known, double stop_cost, int kicks, std::uint64_t seed) {
   const Cycle cycle(problem);
   const int depot = problem.rows();
   Entries entries{2 * depot};
   for (int node = known[at(depot)]; node != depot; node = known[at(node)]) {
     entries.push_back(2 * node);
   }
-  const int kicks = search.iterations > 0 ? search.iterations : 4000 + 40 * depot;
-  entries = iterated_local_search(cycle, neighbours, entries, kicks, stop_cost, search.seed);
+  entries = iterated_local_search(cycle, neighbours, entries, kicks, stop_cost, seed);
   Successors next(known.size());
   for (std::size_t p = 0; p < entries.size(); ++p) {
     next[at(entries[p] / 2)] = entries[(p + 1) % entries.size()] / 2;
@@ -98,16 +100,19 @@ TreeAnswer one_way_tour(const RowTourProblem& problem, const OneWaySearch& searc
   const TreeAnswer first = search_assignments(costs, {costs}, {}, limits);
   if (first.next.empty() || first.cost <= first.lower_bound) return first;
 
-  Assignment prices;
-  assign(costs, prices);
-  const Successors known =
-      improved(problem, priced_neighbours(costs, prices), first.next, first.lower_bound, search);
-  const double target = std::min(first.cost, tour_length(costs, known));
+  // A quick descent sets the target of the prices; those tell the search proper what is worth
+  // trying.
+  const Successors quick = improved(problem, priced_neighbours(costs, {costs}), first.next,
+                                    first.lower_bound, 50 + costs.size, search.seed);
   const int rounds = static_cast<int>(std::clamp(kPriceSteps / (n * n * n), 20.0, 1500.0));
-  const PricedCosts priced = price_cycles(costs, target, rounds, search.stop);
+  const PricedCosts priced =
+      price_cycles(costs, std::min(first.cost, tour_length(costs, quick)), rounds, search.stop);
+  const int kicks = search.iterations > 0 ? search.iterations : 20000 + 200 * costs.size;
+  const Successors known = improved(problem, priced_neighbours(costs, priced), quick,
+                                    std::max(priced.bound, first.lower_bound), kicks, search.seed);
   limits.most_nodes = 1 + std::lround(kTreeSteps / (n * n));
-  TreeAnswer answer =
-      search_assignments(costs, priced, target < first.cost ? known : first.next, limits);
+  TreeAnswer answer = search_assignments(
+      costs, priced, tour_length(costs, known) < first.cost ? known : first.next, limits);
   answer.lower_bound = std::max(answer.lower_bound, first.lower_bound);
   return answer;
 }
