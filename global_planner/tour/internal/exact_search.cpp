@@ -92,9 +92,9 @@ class RouteSearch {
   }
 
   // Whether no way of going on can lead to less than the upper bound.
-  bool hopeless(const Label& label, double time, unsigned mask) const {
+  bool hopeless(const Label& label, double time, Visit last, unsigned mask) const {
     const double least = value(label, time) + model_.problem().span_weight * time;
-    return least + bound_.rest(kind_index_, mask) >= limits_.upper_bound;
+    return least + bound_.rest(kind_index_, last, time, mask) >= limits_.upper_bound;
   }
 
   void extend(const LabelSet& from, unsigned mask, int site) {
@@ -107,7 +107,7 @@ class RouteSearch {
       crossing_.cross(from, site, model_.mode(visit).entry, kNever, arrived_);
       crossing_.work(arrived_, visit, worked_);
       for (const Label& label : worked_.labels) {
-        if (hopeless(label, worked_.curve(label).front().time_s, with)) continue;
+        if (hopeless(label, worked_.curve(label).front().time_s, visit, with)) continue;
         LabelSet& to = node(with, last).labels;
         if (!crossing_.dominance().add(to, label, worked_.curve(label))) continue;
         const int before = from.labels[static_cast<std::size_t>(label.before)].before;
