@@ -232,11 +232,19 @@ Result<void> FarmBuilder::add_charger(const Feature& feature, Properties& proper
 
 // Either a file or generated hills.
 Result<void> FarmBuilder::add_terrain(const Feature& feature, Properties& properties) {
-  const bool generated = properties.has("hills");
+  const bool generated = properties.has("hills_seed");
   const std::string path = properties.text("path", generated ? Need::kOptional : Need::kRequired);
-  const nlohmann::json hills = properties.raw("hills");
+  HillSpec hills;
+  hills.seed =
+      static_cast<std::uint64_t>(properties.whole("hills_seed", {0.0, 2e9}, Need::kOptional, 1));
+  if (generated) {  // else these are unknown keys
+    hills.relief_m =
+        properties.number("hills_relief_m", {0.0, 3000.0}, Need::kOptional, hills.relief_m);
+    hills.wavelength_m =
+        properties.number("hills_wavelength_m", {1.0, 1e5}, Need::kOptional, hills.wavelength_m);
+    hills.cell_m = properties.number("cell_m", {0.1, 1000.0}, Need::kOptional, hills.cell_m);
+  }
   if (auto ok = properties.finish(); !ok) return ok;
-  const Location where = below(feature.where, "properties.hills");
   if (!generated) {
     const auto folder = std::filesystem::path(feature.where.file).parent_path();
     farm_.terrain_files.push_back((folder / path).lexically_normal().string());
@@ -244,11 +252,10 @@ Result<void> FarmBuilder::add_terrain(const Feature& feature, Properties& proper
   }
   if (!path.empty() || farm_.hills) {
     return fail(ErrorCode::kBadGeometry, "a second terrain",
-                "a terrain has a path or hills, and a farm has hills once", where);
+                "a terrain has a path or hills, and a farm has hills once",
+                below(feature.where, "properties.hills_seed"));
   }
-  auto spec = internal::hills_of(hills, where);
-  if (!spec) return tl::unexpected<Error>(spec.error());
-  farm_.hills = *spec;
+  farm_.hills = hills;
   return {};
 }
 

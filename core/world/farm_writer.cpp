@@ -92,11 +92,12 @@ void write_ground(const Farm& farm, Writer& out) {
   }
   if (farm.hills) {
     const HillSpec& h = *farm.hills;
-    const Json hills{{"seed", h.seed},
-                     {"relief_m", h.relief_m},
-                     {"wavelength_m", h.wavelength_m},
-                     {"cell_m", h.cell_m}};
-    out.feature({{"kind", "terrain"}, {"hills", hills}}, nullptr);
+    out.feature({{"kind", "terrain"},
+                 {"hills_seed", h.seed},
+                 {"hills_relief_m", h.relief_m},
+                 {"hills_wavelength_m", h.wavelength_m},
+                 {"cell_m", h.cell_m}},
+                nullptr);
   }
   for (const SoilArea& s : farm.soils) {
     out.feature({{"kind", "soil"}, {"id", s.id}, {"class", config::enum_name(s.soil)}},

@@ -157,7 +157,7 @@ Result<Ground> load_ground(const Farm& farm) {
     if (points > kMostPoints) {
       return fail(ErrorCode::kOutOfRange,
                   fmt::format("hills of {:.0f} million points", points / 1e6),
-                  "a larger cell_m of the hills");
+                  "a larger cell_m of the hills' terrain");
     }
     terrains.push_back(Terrain::hills(*farm.hills, box.min(), box.max()));
   }

@@ -125,19 +125,4 @@ Result<void> Properties::finish() const {
   return {};
 }
 
-Result<HillSpec> hills_of(const nlohmann::json& object, const Location& where) {
-  if (!object.is_object()) {
-    return fail(ErrorCode::kWrongType, describe(object) + " is not an object",
-                R"(such as {"seed": 1, "relief_m": 20, "wavelength_m": 200, "cell_m": 2})", where);
-  }
-  Properties values(object, where);
-  HillSpec spec;
-  spec.seed = static_cast<std::uint64_t>(values.whole("seed", {0.0, 2e9}, Need::kOptional, 1));
-  spec.relief_m = values.number("relief_m", {0.0, 3000.0}, Need::kOptional, spec.relief_m);
-  spec.wavelength_m = values.number("wavelength_m", {1.0, 1e5}, Need::kOptional, spec.wavelength_m);
-  spec.cell_m = values.number("cell_m", {0.1, 1000.0}, Need::kOptional, spec.cell_m);
-  if (auto ok = values.finish(); !ok) return tl::unexpected<Error>(ok.error());
-  return spec;
-}
-
 }  // namespace headland::internal

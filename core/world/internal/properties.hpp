@@ -10,7 +10,6 @@
 #include "core/base/result.hpp"
 #include "core/config/visit.hpp"
 #include "core/model/charge_curve.hpp"
-#include "core/world/terrain.hpp"
 
 namespace headland::internal {
 
@@ -58,8 +57,5 @@ class Properties {
   std::optional<Error> error_;
   std::optional<Error> missing_;
 };
-
-/// Generated hills from the object at `where`.
-Result<HillSpec> hills_of(const nlohmann::json& object, const Location& where);
 
 }  // namespace headland::internal

@@ -161,9 +161,10 @@ TEST(FarmIo, ChargersGiveConstantPowerOrACurve) {
 
 TEST(FarmIo, HillsMayBeGenerated) {
   const auto hills = [](const std::string& text) {
-    return load_texts({collection({feature(R"("kind": "terrain", "hills": )" + text, "null")})});
+    return load_texts({collection({feature(R"("kind": "terrain", )" + text, "null")})});
   };
-  const auto farm = hills(R"({"seed": 7, "relief_m": 35, "wavelength_m": 150, "cell_m": 1})");
+  const auto farm =
+      hills(R"("hills_seed": 7, "hills_relief_m": 35, "hills_wavelength_m": 150, "cell_m": 1)");
   ASSERT_TRUE(farm) << to_string(farm.error());
   ASSERT_TRUE(farm->hills);
   EXPECT_EQ(farm->hills->seed, 7u);
@@ -171,7 +172,7 @@ TEST(FarmIo, HillsMayBeGenerated) {
   EXPECT_EQ(farm->hills->wavelength_m, 150.0);
   EXPECT_EQ(farm->hills->cell_m, 1.0);
   EXPECT_TRUE(farm->terrain_files.empty());
-  EXPECT_EQ(hills("{}")->hills->cell_m, HillSpec{}.cell_m);
+  EXPECT_EQ(hills(R"("hills_seed": 3)")->hills->cell_m, HillSpec{}.cell_m);
 }
 
 TEST(FarmIo, DefaultsFillWhatTheFileLeavesOut) {
@@ -234,7 +235,7 @@ TEST(FarmIo, WrittenTextReadsBackToTheSameText) {
       feature(R"("kind": "poi", "id": "w", "role": "dock", "heading_deg": 33.3)", point({-40, 1})),
       feature(R"("kind": "charger", "id": "c", "heading_deg": -120)", point({-30, 20})),
       feature(R"("kind": "terrain", "path": "/data/dem.tif")", "null"),
-      feature(R"("kind": "terrain", "hills": {"seed": 7, "relief_m": 12.5})", "null"),
+      feature(R"("kind": "terrain", "hills_seed": 7, "hills_relief_m": 12.5)", "null"),
       feature(R"("kind": "soil", "id": "wet", "class": "tilled")", square(0, 0, 30)),
       feature(R"("kind": "charger", "id": "cv", "power_w": [[0, 9000], [0.7, 9000], [1, 500.5]])",
               point({-30, 25})),
@@ -438,15 +439,17 @@ TEST(FarmIoErrors, TerrainAndSoilAreChecked) {
     return error_of({feature(R"("kind": "terrain")" + properties, "null")});
   };
   EXPECT_THAT(terrain(""), HasSubstr("properties.path: required key is missing"));
-  EXPECT_THAT(terrain(R"(, "hills": 3)"), HasSubstr("properties.hills: 3 is not an object; such"));
-  EXPECT_THAT(terrain(R"(, "path": "a.tif", "hills": {})"), HasSubstr("hills: a second terrain"));
-  EXPECT_EQ(terrain(R"(, "hills": {"releif_m": 3})"),
-            "farm.geojson:2: features.0.properties.hills.releif_m: unknown key; did you mean "
-            "'relief_m'? [E103]");
-  EXPECT_THAT(terrain(R"(, "hills": {"cell_m": 0})"), HasSubstr("hills.cell_m: 0 is out of range"));
-  const auto hills = feature(R"("kind": "terrain", "hills": {})", "null");
+  EXPECT_THAT(terrain(R"(, "hills_seed": 0.5)"), HasSubstr("hills_seed: 0.5 is not a whole numb"));
+  EXPECT_THAT(terrain(R"(, "path": "a.tif", "hills_seed": 1)"),
+              HasSubstr("hills_seed: a second terrain"));
+  EXPECT_EQ(terrain(R"(, "hills_seed": 1, "hills_releif_m": 3)"),
+            "farm.geojson:2: features.0.properties.hills_releif_m: unknown key; did you mean "
+            "'hills_relief_m'? [E103]");
+  EXPECT_THAT(terrain(R"(, "hills_seed": 1, "cell_m": 0)"), HasSubstr("cell_m: 0 is out of range"));
+  EXPECT_THAT(terrain(R"(, "path": "a.tif", "cell_m": 1)"), HasSubstr("cell_m: unknown key"));
+  const auto hills = feature(R"("kind": "terrain", "hills_seed": 1)", "null");
   EXPECT_THAT(error_of({hills, hills}),
-              StartsWith("farm.geojson:3: features.1.properties.hills: "));
+              StartsWith("farm.geojson:3: features.1.properties.hills_seed"));
   EXPECT_EQ(error_of({feature(R"("kind": "soil", "class": "tiled")", square(0, 0, 9))}),
             "farm.geojson:2: features.0.properties.class: 'tiled' is not a known name; did you "
             "mean 'tilled'? [E108]");
