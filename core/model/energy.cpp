@@ -22,7 +22,7 @@ double step_energy(const EnergyModel& model, const DriveStep& step) {
       model.rolling_factor_ratio * step.soil.rolling_ratio * weight * step.distance_m;
   const double air = 0.5 * kAirDensity * model.drag_area_m2 * v2 * step.distance_m;
   const double turning =
-      model.turn_loss_mps * mass * std::abs(step.speed_mps * step.curvature_1pm) * step.distance_m;
+      model.turn_loss_ratio * mass * v2 * std::abs(step.curvature_1pm) * step.distance_m;
   const double draft = step.working ? model.implement_draft_n * step.distance_m : 0.0;
   const double work = weight * step.rise_m + kinetic + rolling + air + turning + draft;
   const double load =

@@ -76,8 +76,8 @@ TEST(SimulatedVehicle, CurvesCostTheTurnLoss) {
     return sim.drawn_j();
   };
   EXPECT_NEAR(drawn_at(0.5), drawn_at(0.0), 1e-6);
-  vehicle.energy.turn_loss_mps = 0.5;
-  // c m v |kappa| over 10 m, and a little slip.
+  vehicle.energy.turn_loss_ratio = 0.5;
+  // c m v^2 |kappa| over 10 m, and a little slip.
   EXPECT_NEAR(drawn_at(0.5) - drawn_at(0.0), 0.5 * 200.0 * 0.5 * 10.0 / 0.8, 20.0);
   EXPECT_NEAR(drawn_at(-0.5), drawn_at(0.5), 1e-6);
 }

@@ -18,7 +18,7 @@ EnergyModel random_model(RandomStream& random) {
   m.rotating_mass_kg = random.uniform(0.0, 0.2) * m.mass_kg;
   m.rolling_factor_ratio = random.uniform(0.5, 3.0);
   m.drag_area_m2 = random.uniform(0.0, 4.0);
-  m.turn_loss_mps = random.uniform(0.0, 1.0);
+  m.turn_loss_ratio = random.uniform(0.0, 1.0);
   m.drive_efficiency_ratio = random.uniform(0.4, 1.0);
   m.recuperation_efficiency_ratio = random.uniform(0.0, 1.0);
   m.base_power_w = random.uniform(0.0, 500.0);
@@ -186,8 +186,8 @@ TEST(StepEnergy, AirAndTurningAreWhatTheirFormulasSay) {
   model.drag_area_m2 = 2.0;
   EXPECT_NEAR(step_energy(model, step), 0.5 * 1.2041 * 2.0 * 16.0 * 3.0, 1e-9);
   model.drag_area_m2 = 0.0;
-  model.turn_loss_mps = 0.3;
-  EXPECT_NEAR(step_energy(model, step), 0.3 * 1000.0 * 4.0 * 0.2 * 3.0, 1e-9);
+  model.turn_loss_ratio = 0.3;
+  EXPECT_NEAR(step_energy(model, step), 0.3 * 1000.0 * 16.0 * 0.2 * 3.0, 1e-9);
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ TEST(PathCost, UniformGroundCostsWhatDriveCostSays) {
 
 TEST(PathCost, ALevelTerrainCostsWhatUniformGroundDoes) {
   Vehicle vehicle = robot();
-  vehicle.energy.turn_loss_mps = 0.3;
+  vehicle.energy.turn_loss_ratio = 0.3;
   const Path path = wander(4);
   const auto level = path_cost(vehicle, plane(0.0, 0.0), path, LegKind::kTurn);
   const auto uniform = path_cost(vehicle, Ground(), path, LegKind::kTurn);
@@ -282,9 +282,9 @@ TEST(PathCost, TurnLossGoesWithCurvatureAndSpeed) {
   Path circle;
   circle.append(PathPiece{{0.0, 0.0, 0.0}, 0.25, 20.0, Gear::kForward, 0});
   const double without = path_cost(vehicle, Ground(), circle, LegKind::kTurn)->energy_j;
-  vehicle.energy.turn_loss_mps = 0.4;
+  vehicle.energy.turn_loss_ratio = 0.4;
   const double with = path_cost(vehicle, Ground(), circle, LegKind::kTurn)->energy_j;
-  const double work = 0.4 * 500.0 * 0.5 * 0.25 * 20.0;
+  const double work = 0.4 * 500.0 * 0.5 * 0.5 * 0.25 * 20.0;
   EXPECT_NEAR(with - without, work / 0.8, 0.05 * work);
   EXPECT_GT(with - without, work / 0.8);  // slip takes its share too
 }
