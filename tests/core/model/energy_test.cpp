@@ -23,7 +23,7 @@ EnergyModel random_model(RandomStream& random) {
   m.recuperation_efficiency_ratio = random.uniform(0.0, 1.0);
   m.base_power_w = random.uniform(0.0, 500.0);
   m.implement_power_w = random.uniform(0.0, 2000.0);
-  m.implement_draft_n = random.uniform(0.0, 2000.0);
+  m.implement_draft_n = random.uniform(0.0, 0.3) * m.mass_kg * kGravity;
   return m;
 }
 
@@ -39,7 +39,9 @@ DriveStep random_step(RandomStream& random) {
   step.speed_mps = random.uniform(0.1, 4.0);
   step.speed_before_mps = step.speed_mps;
   step.duration_s = step.distance_m / step.speed_mps;
-  step.curvature_1pm = random.uniform(-1.0, 1.0);
+  // No vehicle takes a bend at more than 2 m/s2, nor pulls so hard that slip reaches its bound.
+  const double tightest = std::min(1.0, 2.0 / (step.speed_mps * step.speed_mps));
+  step.curvature_1pm = random.uniform(-tightest, tightest);
   step.soil = random_soil(random);
   step.working = random.uniform() < 0.5;
   return step;
