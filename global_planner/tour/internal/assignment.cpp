@@ -92,4 +92,18 @@ bool assign(const CostMatrix& costs, Assignment& a) {
   return true;
 }
 
+Cycles cycles_of(const Successors& next) {
+  Cycles cycles;
+  std::vector<bool> seen(next.size(), false);
+  for (int first = 0; first < std::ssize(next); ++first) {
+    if (seen[at(first)]) continue;
+    cycles.emplace_back();
+    for (int node = first; !seen[at(node)]; node = next[at(node)]) {
+      seen[at(node)] = true;
+      cycles.back().push_back(node);
+    }
+  }
+  return cycles;
+}
+
 }  // namespace headland::tour

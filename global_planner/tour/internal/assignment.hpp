@@ -43,4 +43,9 @@ bool augment(const CostMatrix& costs, Assignment& assignment, int row);
 /// The cheapest assignment of all rows; false if there is none. O(n^3).
 bool assign(const CostMatrix& costs, Assignment& assignment);
 
+using Cycles = std::vector<std::vector<int>>;
+
+/// The cycles into which successors fall, each from its lowest node on.
+Cycles cycles_of(const Successors& next);
+
 }  // namespace headland::tour

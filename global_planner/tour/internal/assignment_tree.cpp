@@ -18,22 +18,6 @@ constexpr long kPatchedEvery = 50;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-using Cycles = std::vector<std::vector<int>>;
-
-Cycles cycles_of(const Successors& next) {
-  Cycles cycles;
-  std::vector<bool> seen(next.size(), false);
-  for (int first = 0; first < std::ssize(next); ++first) {
-    if (seen[at(first)]) continue;
-    cycles.emplace_back();
-    for (int node = first; !seen[at(node)]; node = next[at(node)]) {
-      seen[at(node)] = true;
-      cycles.back().push_back(node);
-    }
-  }
-  return cycles;
-}
-
 // Karp's patching: joins the smallest cycle to another by the cheapest exchange of one arc each,
 // until one is left. Empty if no exchange is possible.
 Successors patched(const CostMatrix& costs, Successors next) {

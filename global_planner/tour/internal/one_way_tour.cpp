@@ -105,8 +105,9 @@ TreeAnswer one_way_tour(const RowTourProblem& problem, const OneWaySearch& searc
   const Successors quick = improved(problem, priced_neighbours(costs, {costs}), first.next,
                                     first.lower_bound, 50 + costs.size, search.seed);
   const int rounds = static_cast<int>(std::clamp(kPriceSteps / (n * n * n), 20.0, 1500.0));
+  const double target = std::min(first.cost, tour_length(costs, quick));
   const PricedCosts priced =
-      price_cycles(costs, std::min(first.cost, tour_length(costs, quick)), rounds, search.stop);
+      price_cycles(costs, {target - first.lower_bound, rounds, search.stop, {}});
   const int kicks = search.iterations > 0 ? search.iterations : 20000 + 200 * costs.size;
   const Successors known = improved(problem, priced_neighbours(costs, priced), quick,
                                     std::max(priced.bound, first.lower_bound), kicks, search.seed);

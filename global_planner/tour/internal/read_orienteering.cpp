@@ -52,7 +52,7 @@ void set_orienteering(RouteInstance& instance, const std::function<double(int, i
     add_place(instance, site, std::to_string(site + 1), 0.0).reward =
         scores[static_cast<std::size_t>(site)];
   }
-  instance.start_name = "1";
+  instance.start_name = '1';
   instance.finish_name = std::to_string(finish + 1);
   TourVehicle vehicle;
   vehicle.finish = finish;

@@ -23,7 +23,7 @@ void read_round_trip(TsplibText& tsplib, InstanceText& text, RouteInstance& inst
     return way.cost == std::floor(way.cost);
   });
   for (int node = 1; node < count; ++node) add_place(instance, node, std::to_string(node + 1), 0.0);
-  instance.start_name = instance.finish_name = "1";
+  instance.start_name = instance.finish_name = '1';
   instance.problem.vehicles.emplace_back();
 }
 
@@ -106,7 +106,7 @@ void read_electric(TsplibText& tsplib, InstanceText& text, RouteInstance& instan
     add_place(instance, site, std::to_string(site + 1), 0.0).demand =
         data.demand[static_cast<std::size_t>(site)];
   }
-  instance.start_name = instance.finish_name = "1";
+  instance.start_name = instance.finish_name = '1';
   const double load = std::accumulate(data.demand.begin() + 1, data.demand.end(), 0.0);
   const int vehicles = useful_vehicles(load, data.capacity, data.customers - 1);
   problem.stations.push_back({0, vehicles});

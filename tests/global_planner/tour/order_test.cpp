@@ -66,7 +66,7 @@ TEST(CyclePrices, NeverExceedTheShortestTour) {
     const CostMatrix costs = random_costs(3 + random.index(5), random, 0.1);
     const double best = cheapest_permutation(costs, true);
     if (!(best < kNever)) continue;
-    const PricedCosts priced = price_cycles(costs, best, 60, {});
+    const PricedCosts priced = price_cycles(costs, {5.0, 60, {}, {}});
     Assignment plain;
     ASSERT_TRUE(assign(costs, plain));
     EXPECT_LE(priced.bound, best + 1e-6);
@@ -89,7 +89,8 @@ TEST(AssignmentTree, FindsTheShortestTourOrProvesThereIsNone) {
     EXPECT_EQ(answer.cost, best);
     EXPECT_EQ(answer.lower_bound, best);
     const TreeAnswer priced = search_assignments(
-        costs, best < kNever ? price_cycles(costs, best, 30, {}) : PricedCosts{costs}, {}, limits);
+        costs, best < kNever ? price_cycles(costs, {5.0, 30, {}, {}}) : PricedCosts{costs}, {},
+        limits);
     EXPECT_EQ(priced.cost, best);
   }
   EXPECT_GT(without, 10);
