@@ -13,7 +13,7 @@ constexpr double kStep = 0.25;  // [m]
 // The slope changes along a step, and other checks sample other points.
 constexpr double kSlopeSlack = 0.25;   // [deg]
 constexpr double kCoarse = 8.0;        // steps of the first look at a track
-constexpr double kLongestRatio = 2.0;  // of a clothoid to its chord
+constexpr double kLongestRatio = 1.3;  // of a clothoid to its chord
 
 }  // namespace
 
@@ -40,14 +40,14 @@ TrackMaker::TrackMaker(const Region& drivable, const Ground& ground, const Vehic
       curve_(curve),
       radius_(vehicle.turning_radius()),
       step_(ground.flat() ? kStep : std::min(kStep, ground.step())),
-      slope_stride_(ground.flat() ? 1 : static_cast<int>(std::min(ground.step(), 100.0) / step_)),
       both_(vehicle.footprint),
       most_pitch_(std::tan(deg_to_rad(vehicle.max_pitch_deg - kSlopeSlack))),
       most_roll_(std::tan(deg_to_rad(vehicle.max_roll_deg - kSlopeSlack))) {
   both_.front_m = std::max(both_.front_m, both_.rear_m);
   both_.rear_m = both_.front_m;
-  // Every point of the outline turns about a centre no further away than this: the sagitta.
+  // Every point of the outline turns about a centre no further away than this.
   const double reach = radius_ + std::hypot(both_.front_m, 0.5 * both_.width_m);
+  stray_ = 0.5 * step_ * reach / radius_;
   sweep_ = reach * step_ * step_ / (8.0 * radius_ * radius_);
 }
 
@@ -105,25 +105,39 @@ void TrackMaker::walk(const PathPiece& piece, double longest, Visit visit) {
   }
 }
 
+template <class Visit>
+void TrackMaker::walk(const Track& track, double longest, Visit visit) {
+  bool go_on = true;
+  for (int i = 0; i < track.count && go_on; ++i) {
+    walk(track.pieces[static_cast<std::size_t>(i)], longest,
+         [&](const Pose2& pose, const Point2& heading) { return go_on = visit(pose, heading); });
+  }
+}
+
+void TrackMaker::check_outline(const Pose2& pose, double margin, Ways& open) const {
+  if (drivable_.contains(pose, both_, margin)) return;
+  open.forwards = open.forwards && drivable_.contains(pose, vehicle_.footprint, margin);
+  open.backwards = open.backwards && drivable_.contains(reversed(pose), vehicle_.footprint, margin);
+}
+
+// A coarse look finds out most tracks that do not fit, and those with room to spare on all sides,
+// of which only the slopes remain to be looked at.
 Ways TrackMaker::open_ways(const Track& track, double margin, Ways wanted) const {
   const double kept = margin + sweep_;
   Ways open = wanted;
-  // Most tracks that do not fit are found out by a coarse look.
-  for (const double longest : {kCoarse * step_, step_}) {
-    for (int i = 0; i < track.count && open.any(); ++i) {
-      int k = 0;
-      walk(track.pieces[static_cast<std::size_t>(i)], longest,
-           [&](const Pose2& pose, const Point2& heading) {
-             if (k++ % slope_stride_ == 0 && !level_enough(pose.position(), heading))
-               open = {false, false};
-             if (!open.any() || drivable_.contains(pose, both_, kept)) return open.any();
-             open.forwards = open.forwards && drivable_.contains(pose, vehicle_.footprint, kept);
-             open.backwards =
-                 open.backwards && drivable_.contains(reversed(pose), vehicle_.footprint, kept);
-             return open.any();
-           });
-    }
-  }
+  bool roomy = true;
+  walk(track, kCoarse * step_, [&](const Pose2& pose, const Point2& heading) {
+    if (!level_enough(pose.position(), heading)) open = {false, false};
+    roomy = roomy && drivable_.contains(pose, both_, kept + kCoarse * stray_);
+    if (!roomy) check_outline(pose, kept, open);
+    return open.any();
+  });
+  if (!open.any() || (roomy && ground_.flat())) return open;
+  walk(track, roomy ? ground_.step() : step_, [&](const Pose2& pose, const Point2& heading) {
+    if (!level_enough(pose.position(), heading)) open = {false, false};
+    if (!roomy) check_outline(pose, kept, open);
+    return open.any();
+  });
   return open;
 }
 

@@ -57,6 +57,9 @@ class TrackMaker {
   bool level_enough(const Point2& place, const Point2& heading) const;
   template <class Visit>
   static void walk(const PathPiece& piece, double longest, Visit visit);
+  template <class Visit>
+  static void walk(const Track& track, double longest, Visit visit);
+  void check_outline(const Pose2& pose, double margin, Ways& open) const;
 
   const Region& drivable_;
   const Ground& ground_;
@@ -64,8 +67,8 @@ class TrackMaker {
   EdgeCurve curve_;
   double radius_;
   double step_;        // between samples of a track [m]
-  int slope_stride_;   // samples from one look at the slope to the next
-  double sweep_;       // what the outline may stray between two samples [m]
+  double stray_;       // of a point of the outline from where it is at the nearest sample [m]
+  double sweep_;       // and from the line between two samples: the sagitta [m]
   Footprint both_;     // the outline in both headings
   double most_pitch_;  // tangent
   double most_roll_;   // tangent
