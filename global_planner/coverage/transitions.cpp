@@ -183,7 +183,7 @@ void Transitions::Impl::find_turns() {
       if (!turn) continue;
       const auto add = [&](int begin, int end, const Turn& way) {
         const Pose2& out = sites[static_cast<std::size_t>(begin)].depart;
-        const std::optional<DriveCost> cost = pricer.price(turn_path(out, way), kind);
+        const std::optional<DriveCost> cost = pricer.price(turn_path(out, way), kind, way.cusps());
         if (cost) found[static_cast<std::size_t>(from)].push_back({begin, end, way, *cost});
       };
       add(from, to, *turn);

@@ -40,10 +40,11 @@ LaneGraph::LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double ra
   sort_steps();
 }
 
-WayCost LaneGraph::priced(const Path& path) const {
-  const std::optional<DriveCost> drive = pricer_.price(path, LegKind::kTransit);
+WayCost LaneGraph::priced(const Path& path, int cusps) const {
+  const std::optional<DriveCost> drive = pricer_.price(path, LegKind::kTransit, cusps);
   if (!drive) return {kInfinity, {}, 0};
-  return {drive->value(pricer_.objective()), *drive, static_cast<int>(path.segments().size()) - 1};
+  const int within = static_cast<int>(path.segments().size()) - 1;
+  return {drive->value(pricer_.objective()), *drive, std::max(within, cusps)};
 }
 
 Pose2 LaneGraph::pose(int node) const {
@@ -296,7 +297,8 @@ std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) con
       Connection connection{option.node, {}, {option.lead, 0.0, curve}};
       connection.way = priced(port.travel == Travel::kBack
                                   ? turn_path(pose(option.node ^ 1), mirrored(connection.turn))
-                                  : turn_path(port.end.out, connection.turn));
+                                  : turn_path(port.end.out, connection.turn),
+                              connection.turn.cusps());
       if (connection.way.cost == kInfinity) continue;
       found.push_back(connection);
       costs.push_back(option.cost);

@@ -129,7 +129,7 @@ class LaneGraph {
   Curve turn_round(bool other_hand) const;
   void join_reverses();
   double fitting_radius(const Candidate& edge) const;
-  WayCost priced(const Path& path) const;
+  WayCost priced(const Path& path, int cusps = -1) const;
   double potential(const Pose2& pose) const { return pricer_.potential(pose.position()); }
   void price_steps();
   void sort_steps();

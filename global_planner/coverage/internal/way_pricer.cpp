@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "global_planner/coverage/internal/way_pricer.hpp"
 
+#include <algorithm>
+
 namespace headland::coverage {
 
-std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind) const {
+std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind, int cusps) const {
   if (path.empty()) return DriveCost{};
-  if (ground_.uniform()) {
-    const int cusps = static_cast<int>(path.segments().size()) - 1;
-    return drive_cost(vehicle_, kind, path.length(), cusps);
-  }
+  const int within = static_cast<int>(path.segments().size()) - 1;
+  if (ground_.uniform()) return drive_cost(vehicle_, kind, path.length(), std::max(within, cusps));
   if (!ground_.flat() && check_slopes(vehicle_, ground_, path)) return std::nullopt;
   const Result<DriveCost> cost = path_cost(vehicle_, ground_, path, kind);
-  return cost ? std::optional(*cost) : std::nullopt;
+  if (!cost) return std::nullopt;
+  const double standing = std::max(0, cusps - within) * vehicle_.gear_change_s;
+  const double energy = standing * vehicle_.energy.base_power_w;
+  return *cost + DriveCost{0.0, standing, energy, energy};
 }
 
 double WayPricer::potential(const Point2& at) const {

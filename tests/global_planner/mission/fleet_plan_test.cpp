@@ -119,7 +119,7 @@ TEST(FleetPlan, TwoVehiclesShareTheRowsWhenTimeCounts) {
 }
 
 TEST(FleetPlan, OneSlotIsNeverHeldByTwo) {
-  Mission m = mission(120.0, 2);
+  Mission m = mission(45.0, 2);
   m.config.objective = Objective::kTime;
   const auto plan = plan_mission(m);
   ASSERT_TRUE(plan) << to_string(plan.error());
