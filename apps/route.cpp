@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -67,13 +68,20 @@ class TimedSearch {
     TourOptions options;
     options.seed = seed;
     options.iterations = options_.iterations;
-    options.stop = [this] { return over(); };
-    options.progress = [this](double, double cost) {
-      least_ = std::min(least_, cost);
-      bar_.update(std::min(1.0, seconds() / options_.time_limit_s),
-                  fmt::format("best {:.6g}", least_));
+    options.stop = [this] {
+      show();
+      return over();
     };
+    options.progress = [this](double, double cost) { least_ = std::min(least_, cost); };
     return solve_tour(instance_.problem, options);
+  }
+
+  void show() {
+    constexpr double kPeriod = 0.1;
+    if (seconds() < shown_s_ + kPeriod) return;
+    shown_s_ = seconds();
+    bar_.update(std::min(1.0, shown_s_ / options_.time_limit_s),
+                least_ < kNever ? fmt::format("best {:.7g}", least_) : "");
   }
 
   const RouteInstance& instance_;
@@ -81,7 +89,21 @@ class TimedSearch {
   ProgressBar bar_;
   Clock::time_point begin_;
   double least_ = kNever;
+  double shown_s_ = 0.0;
 };
+
+// The solver counts tasks; the user knows them by the file's ids.
+Error in_its_names(Error error, const RouteInstance& instance, const std::string& file) {
+  int task = -1;
+  int length = 0;
+  if (std::sscanf(error.what.c_str(), "task %d%n", &task, &length) == 1 && task >= 0 &&
+      task < std::ssize(instance.task_names)) {
+    error.what.replace(0, static_cast<std::size_t>(length),
+                       instance.task_names[static_cast<std::size_t>(task)]);
+  }
+  error.where.file = file;
+  return error;
+}
 
 Error internal_error(const std::string& wrong) {
   return {ErrorCode::kInternal,
@@ -112,7 +134,9 @@ int route_command(const CommonOptions& common, const RouteOptions& options) {
   }
   TimedSearch search(*instance, options);
   const auto solution = search.run();
-  if (!solution) return report_error(solution.error(), common);
+  if (!solution) {
+    return report_error(in_its_names(solution.error(), *instance, common.file), common);
+  }
   if (const auto wrong = check_solution(instance->problem, *solution)) {
     return report_error(internal_error(*wrong), common);
   }
