@@ -2,6 +2,7 @@
 #include "global_planner/coverage/transitions.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -91,6 +92,7 @@ struct Transitions::Impl {
   std::vector<Path> row_paths;                       // from first to last end
   std::vector<Way> ways;
   std::vector<Path> given;
+  std::atomic<bool> steep_turns = false;  // some were left out
 };
 
 Transitions::Impl::Impl(const Farm& farm, const Ground& ground, const std::vector<RowRef>& row_refs,
@@ -184,6 +186,7 @@ void Transitions::Impl::find_turns() {
       const auto add = [&](int begin, int end, const Turn& way) {
         const Pose2& out = sites[static_cast<std::size_t>(begin)].depart;
         const std::optional<DriveCost> cost = pricer.price(turn_path(out, way), kind, way.cusps());
+        if (!cost) steep_turns = true;
         if (cost) found[static_cast<std::size_t>(from)].push_back({begin, end, way, *cost});
       };
       add(from, to, *turn);
@@ -319,6 +322,16 @@ std::optional<Error> Transitions::Impl::shut_in_row() const {
     if (!others || (left && entered)) continue;
     const Pose2& out = sites[static_cast<std::size_t>(e)].depart;
     const Footprint& shape = vehicle.footprint;
+    if (steep_turns) {
+      return Error{ErrorCode::kTooSteep,
+                   fmt::format("{} at ({:.1f}, {:.1f}): no way {} that keeps to slopes of {:.0f} "
+                               "degrees along and {:.0f} across and to the terrain",
+                               sites[static_cast<std::size_t>(e)].name, out.x, out.y,
+                               left ? "in" : "out", vehicle.max_pitch_deg, vehicle.max_roll_deg),
+                   "leave the row out (tasks.rows), or use a vehicle with larger max_pitch_deg and "
+                   "max_roll_deg",
+                   {}};
+    }
     const double most = 50.0;
     const double ahead = space.room_ahead(out, most, {e / 2, -1});
     return Error{

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "global_planner/tour/internal/bounds.hpp"
 #include "global_planner/tour/internal/completion_bound.hpp"
 #include "global_planner/tour/internal/exact_search.hpp"
 #include "global_planner/tour/internal/impossible.hpp"
@@ -27,7 +29,10 @@ using tour::Visit;
 constexpr int kNearTasks = 100;
 constexpr int kMostExactTasks = 18;        // 2^n sets are kept
 constexpr long kExactEffort = 60'000'000;  // labels
-constexpr long kRoundsForExact = 2'000;    // of ruin and recreate, for the upper bound
+constexpr std::size_t kLongestExactRoute = 100;
+constexpr long kLabelsPerRound = 1'000;
+constexpr int kMostPricedTasks = 200;
+constexpr long kRoundsForExact = 2'000;  // of ruin and recreate, for the upper bound
 constexpr long kFirstAnneal = 20'000;
 
 struct Candidate {
@@ -36,10 +41,11 @@ struct Candidate {
 };
 
 // Routes with their charges and times; nothing if queues at stations break a window.
-std::optional<Candidate> schedule(const Model& model, const std::vector<PlannedRoute>& routes) {
+std::optional<Candidate> schedule(const Model& model, const std::vector<PlannedRoute>& routes,
+                                  tour::Crossing::Effort effort) {
   std::vector<tour::Crossing> crossings;
   for (int k = 0; k < static_cast<int>(model.kinds().size()); ++k) {
-    crossings.emplace_back(model, k, true);
+    crossings.emplace_back(model, k, effort);
   }
   std::vector<std::size_t> used(model.kinds().size(), 0);
   std::vector<int> vehicles;
@@ -78,13 +84,19 @@ class Search {
       if (model_.task(t).reward < kNever) continue;
       if (auto error = tour::why_impossible(model_, t)) return tl::unexpected(*error);
     }
-    bound_ = tour::CompletionBound(model_).whole();
+    if (model_.tasks() <= kMostPricedTasks) bound_ = tour::CompletionBound(model_).whole();
+    if (!exact()) raise_bound();
     if (!solve_as_order()) search();
     if (!best_) return nothing_found();
+    if (exact() && !proven()) raise_bound();
     return answer();
   }
 
  private:
+  void raise_bound() { bound_ = std::max(bound_, tour::lower_bound(problem_, options_.stop)); }
+  bool proven() const {
+    return best_ && bound_ >= best_->cost - 1e-9 * std::abs(best_->cost) - model_.cost_slack();
+  }
   bool one_vehicle() const { return problem_.vehicles.size() == 1; }
   bool exact() const {
     return model_.tasks() <= std::min(options_.exact_up_to_tasks, kMostExactTasks);
@@ -125,11 +137,12 @@ class Search {
     if (exact() && find_exactly()) return;
     search.save_vehicles(rounds / 4);
     offer(routes_of(plan));
-    long left = rounds;
-    for (long length = std::min(left, std::max(kFirstAnneal, rounds / 8));
-         left > 0 && !search.stopped(); length = std::min(2 * length, left)) {
-      search.anneal(left < 2 * length ? left : length);
-      left -= left < 2 * length ? left : length;
+    // Ever longer anneals, so that one may end at any time.
+    long length = std::min(rounds, std::max(kFirstAnneal, rounds / 8));
+    for (long left = rounds; left > 0 && !search.stopped() && !proven(); length *= 2) {
+      if (left < 2 * length) length = left;
+      search.anneal(length, labels_for(length));
+      left -= length;
       offer(routes_of(plan));
     }
     if (exact()) find_exactly();
@@ -139,6 +152,12 @@ class Search {
     if (exact()) return kRoundsForExact;
     if (options_.iterations > 0) return options_.iterations;
     return 20'000 + 400L * model_.tasks();
+  }
+
+  // Long routes take more labels a round; by default they get fewer rounds for it.
+  long labels_for(long rounds) const {
+    if (options_.iterations > 0) return std::numeric_limits<long>::max();
+    return std::max<long>(kLabelsPerRound * rounds, 1);
   }
 
   // True if the best is proven.
@@ -153,10 +172,18 @@ class Search {
   }
 
   void offer(const std::vector<PlannedRoute>& routes) {
-    auto candidate = schedule(model_, routes);
-    if (candidate && candidate->cost < kNever && (!best_ || candidate->cost < best_->cost)) {
-      best_ = std::move(candidate);
+    for (const auto effort : {tour::Crossing::Effort::kThrifty, tour::Crossing::Effort::kExact}) {
+      if (effort == tour::Crossing::Effort::kExact && !short_enough(routes)) continue;
+      auto candidate = schedule(model_, routes, effort);
+      if (candidate && (!best_ || candidate->cost < best_->cost)) best_ = std::move(candidate);
     }
+  }
+
+  // Exact charging of a long route may take too long.
+  static bool short_enough(const std::vector<PlannedRoute>& routes) {
+    return std::all_of(routes.begin(), routes.end(), [](const PlannedRoute& route) {
+      return route.visits.size() <= kLongestExactRoute;
+    });
   }
 
   tl::unexpected<Error> nothing_found() const {
@@ -180,9 +207,8 @@ class Search {
       solution.dropped.push_back(
           {t, impossible ? impossible->what : "costs more than it is worth beside the others"});
     }
-    const double slack = 1e-9 * std::abs(solution.cost) + model_.cost_slack();
     solution.lower_bound = std::min(bound_, solution.cost);
-    solution.optimal = bound_ >= solution.cost - slack;
+    solution.optimal = proven();
     return solution;
   }
 

@@ -67,7 +67,7 @@ void CompletionBound::add_kind(int kind_index) {
   const auto price = [&](const TourLeg& leg) { return leg.cost + time_price * leg.duration_s; };
   const Matrix cost =
       closure(sites, stations, [&](int a, int b) { return price(model_.way(kind_index, a, b)); });
-  const Matrix time = closure(sites, 0, [&](int a, int b) {
+  const Matrix time = closure(sites, model_.windows() ? 0 : sites.size(), [&](int a, int b) {
     const TourLeg& leg = model_.way(kind_index, a, b);
     return leg.cost < kNever ? leg.duration_s : kNever;
   });

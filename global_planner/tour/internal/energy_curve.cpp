@@ -40,6 +40,17 @@ double head_start(std::span<const CurvePoint> arrival, const ChargeFunction& fun
   return time_at(arrival, energy) - charge_time(function, energy);
 }
 
+// Along the charge function from where the only point lies on it.
+void charge_from_point(EnergyCurve& curve, const ChargeFunction& function, double full) {
+  const CurvePoint arrival = curve.front();
+  const double offset = arrival.time_s - charge_time(function, arrival.energy_j);
+  for (const auto& point : function.points) {
+    if (point.energy_j <= arrival.energy_j || point.energy_j >= full) continue;
+    curve.push_back({point.energy_j, offset + point.time_s});
+  }
+  curve.push_back({full, offset + charge_time(function, full)});
+}
+
 }  // namespace
 
 bool need_energy(EnergyCurve& curve, double energy_j) {
@@ -126,10 +137,14 @@ void charge(EnergyCurve& curve, const ChargeFunction& function, double full_j, b
     curve.front().energy_j = full;
     return;
   }
+  if (curve.size() == 1) {
+    charge_from_point(curve, function, full);
+    return;
+  }
   keep_up_to_energy(curve, full);
-  const EnergyCurve arrival(curve);
-  EnergyCurve& grid = scratch;  // energies at which anything bends
-  grid.assign(curve.begin(), curve.end());
+  EnergyCurve& arrival = scratch;
+  arrival = curve;
+  EnergyCurve grid(curve);  // energies at which anything bends
   for (const auto& point : function.points) {
     if (point.energy_j > curve.front().energy_j && point.energy_j < full) {
       grid.push_back({point.energy_j, 0.0});

@@ -25,7 +25,7 @@ class RouteSearch {
   RouteSearch(const Model& model, int kind, const CompletionBound& bound, const ExactLimits& limits)
       : model_(model),
         kind_(model.kind(kind)),
-        crossing_(model, kind, true),
+        crossing_(model, kind, Crossing::Effort::kExact),
         bound_(bound),
         limits_(limits),
         kind_index_(kind) {
@@ -45,7 +45,7 @@ class RouteSearch {
     for (std::vector<Node> level = take_next(); !level.empty(); level = take_next()) {
       for (const Node& node : level) {
         if (++polled_ % kPollEvery == 0 && limits_.stop && limits_.stop()) return false;
-        if (crossing_.effort() > limits_.effort) return false;
+        if (crossing_.labels_made() > limits_.effort) return false;
         const int exit = model_.mode(visits_[node.last]).exit;
         finish(node.labels, node.mask, exit);
         extend(node.labels, node.mask, exit);
@@ -54,7 +54,7 @@ class RouteSearch {
     return true;
   }
 
-  long effort() const { return crossing_.effort(); }
+  long effort() const { return crossing_.labels_made(); }
   RouteTable table() { return std::move(routes_); }
   std::vector<Visit> visits(int step) const {
     std::vector<Visit> order;
@@ -104,7 +104,7 @@ class RouteSearch {
       if (with == mask || load(with) > kind_.vehicle.load_capacity * (1.0 + 1e-12)) continue;
       if (too_late(from, site, visit)) continue;
       crossing_.clear_log();
-      crossing_.cross(from, site, model_.mode(visit).entry, kNever, arrived_);
+      crossing_.cross(from, site, model_.mode(visit).entry, {}, arrived_);
       crossing_.work(arrived_, visit, worked_);
       for (const Label& label : worked_.labels) {
         if (hopeless(label, worked_.curve(label).front().time_s, visit, with)) continue;

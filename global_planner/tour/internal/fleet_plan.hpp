@@ -38,6 +38,9 @@ class FleetPlan {
   /// No more vehicles than this are put to use.
   void limit_vehicles(int count) { most_vehicles_ = count; }
 
+  /// How much was evaluated: the same on every machine.
+  long labels_made() const { return evaluator_.labels_made(); }
+
   /// What the search minimises: the objective, tasks that must be done and are absent not counted,
   /// and a small share of all finishing times where the span counts. Infinity if the queues at
   /// stations break a window.

@@ -59,7 +59,7 @@ struct Reason {
 Reason reason_of(const Model& model, int kind_index, int task) {
   const VehicleKind& kind = model.kind(kind_index);
   if (model.task(task).demand > kind.vehicle.load_capacity) return {Reason::kLoad, kNever};
-  Crossing crossing(model, kind_index, true);
+  Crossing crossing(model, kind_index, Crossing::Effort::kExact);
   Reason reason;
   for (int m = 0; m < model.modes(task); ++m) {
     const Visit visit{task, m};

@@ -32,7 +32,7 @@ std::vector<LabelSet> label_sets(const Model& model, Crossing& crossing, const V
   int site = kind.vehicle.start;
   LabelSet arrived;
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    crossing.cross(sets[i], site, model.mode(visits[i]).entry, kNever, arrived);
+    crossing.cross(sets[i], site, model.mode(visits[i]).entry, {}, arrived);
     crossing.work(arrived, visits[i], sets[i + 1]);
     if (sets[i + 1].empty()) return {};
     site = model.mode(visits[i]).exit;

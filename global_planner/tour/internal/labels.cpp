@@ -7,6 +7,7 @@
 namespace headland::tour {
 namespace {
 
+constexpr std::size_t kMostLabels = 8;    // of a thrifty crossing
 constexpr int kLongestTable = 4'000'000;  // pairs of sites whose useful stations are remembered
 
 // `better` costs no more than `label`, and offers as much energy as early.
@@ -47,11 +48,11 @@ double need_before(const TourLeg& leg, double after_j, const BatteryLimits& batt
   return need <= battery.full_j ? need : kNever;
 }
 
-Crossing::Crossing(const Model& model, int kind, bool all_stations)
+Crossing::Crossing(const Model& model, int kind, Effort effort)
     : model_(model),
       kind_index_(kind),
       kind_(model.kind(kind)),
-      all_stations_(all_stations),
+      effort_(effort),
       at_station_(model.problem().stations.size()) {
   dominance_.cost_slack = model.cost_slack();
   dominance_.time_slack = model.time_slack();
@@ -60,7 +61,7 @@ Crossing::Crossing(const Model& model, int kind, bool all_stations)
   dominance_.time_is_cost = model.time_is_cost();
   dominance_.time_price = model.duration_price();
   const long pairs = static_cast<long>(model.problem().sites) * model.problem().sites;
-  if (!all_stations && kind_.stations.size() > 1 && pairs <= kLongestTable) {
+  if (effort == Effort::kThrifty && kind_.stations.size() > 1 && pairs <= kLongestTable) {
     useful_begin_.assign(static_cast<std::size_t>(pairs), -1);
   }
 }
@@ -73,16 +74,16 @@ void Crossing::start(LabelSet& to) {
 }
 
 bool Crossing::drive_curve(std::span<const CurvePoint> curve, const TourLeg& leg) {
-  ++effort_;
+  ++labels_made_;
   if (!(leg.cost < kNever)) return false;
   curve_.assign(curve.begin(), curve.end());
   return drive(curve_, leg, model_.duration(leg), kind_.battery);
 }
 
-void Crossing::cross(const LabelSet& from, int a, int b, double need_j, LabelSet& to) {
+void Crossing::cross(const LabelSet& from, int a, int b, const Outlook& outlook, LabelSet& to) {
   to.clear();
   const TourLeg& direct = model_.way(kind_index_, a, b);
-  const double need_here = need_before(direct, need_j, kind_.battery);
+  const double need_here = need_before(direct, outlook.need_j, kind_.battery);
   bool stations = false;
   for (int i = 0; i < static_cast<int>(from.labels.size()); ++i) {
     const Label& label = from.labels[static_cast<std::size_t>(i)];
@@ -100,7 +101,7 @@ void Crossing::cross(const LabelSet& from, int a, int b, double need_j, LabelSet
     }
     Label origin = label;
     origin.before = i;
-    visit_stations(origin, curve, -1, a, b);
+    visit_stations(origin, curve, -1, a, b, outlook.latest_s);
   }
   // Each station's labels go on to b, and to further stations; dominance ends this.
   for (std::size_t next = 0; stations && next < pending_.size(); ++next) {
@@ -115,16 +116,41 @@ void Crossing::cross(const LabelSet& from, int a, int b, double need_j, LabelSet
     const TourLeg& onward = model_.way(kind_index_, site, b);
     if (drive_curve(curve, onward)) {
       dominance_.add(to, {label.cost + onward.cost, 0, 0, label.before, label.stations}, curve_);
+      if (effort_ == Effort::kThrifty) continue;
     }
-    visit_stations(label, curve, at.station, site, b);
+    visit_stations(label, curve, at.station, site, b, outlook.latest_s);
   }
+  if (effort_ == Effort::kThrifty) trim(to);
+}
+
+// Keeps the cheapest labels and the one with most energy.
+void Crossing::trim(LabelSet& set) const {
+  auto& labels = set.labels;
+  if (labels.size() <= kMostLabels) return;
+  const auto most_energy = [&](const Label& l) { return set.curve(l).back().energy_j; };
+  const auto price = [&](const Label& l) {
+    return l.cost + model_.duration_price() * set.curve(l).front().time_s;
+  };
+  std::iter_swap(labels.begin(), std::max_element(labels.begin(), labels.end(),
+                                                  [&](const Label& x, const Label& y) {
+                                                    return most_energy(x) < most_energy(y);
+                                                  }));
+  std::stable_sort(labels.begin() + 1, labels.end(),
+                   [&](const Label& x, const Label& y) { return price(x) < price(y); });
+  labels.resize(kMostLabels);
 }
 
 void Crossing::visit_stations(const Label& label, std::span<const CurvePoint> curve, int before,
-                              int a, int b) {
+                              int a, int b, double latest_s) {
+  const bool hurry = kind_.detours_never_pay && latest_s < kNever;
   for (const int s : useful_stations(a, b)) {
     if (s == before) continue;
     const TourLeg& way = model_.way(kind_index_, a, model_.station_site(s));
+    if (hurry && curve.front().time_s + way.duration_s +
+                         model_.way(kind_index_, model_.station_site(s), b).duration_s >
+                     latest_s) {
+      continue;
+    }
     if (!drive_curve(curve, way)) continue;
     if (kind_.detours_never_pay && curve_.front().energy_j >= kind_.battery.full_j) continue;
     charge(curve_, charging(s), kind_.battery.full_j, model_.timeless(), scratch_);
@@ -141,7 +167,7 @@ void Crossing::work(const LabelSet& from, Visit visit, LabelSet& to) {
   const TourTask& task = model_.task(visit.task);
   const TourLeg& leg = model_.work(kind_index_, visit);
   for (const Label& label : from.labels) {
-    ++effort_;
+    ++labels_made_;
     if (!(leg.cost < kNever)) return;
     const auto curve = from.curve(label);
     curve_.assign(curve.begin(), curve.end());
@@ -156,7 +182,7 @@ void Crossing::work(const LabelSet& from, Visit visit, LabelSet& to) {
 
 void Crossing::finish(const LabelSet& from, int a, LabelSet& to) {
   LabelSet arrived;
-  cross(from, a, kind_.vehicle.finish, kind_.finish_need_j, arrived);
+  cross(from, a, kind_.vehicle.finish, {kind_.finish_need_j, kNever}, arrived);
   to.clear();
   for (const Label& label : arrived.labels) {
     const auto curve = arrived.curve(label);
@@ -187,7 +213,7 @@ bool Crossing::as_near(int other, int station, int a, int b) const {
 
 std::span<const int> Crossing::useful_stations(int a, int b) {
   const auto& all = kind_.stations;
-  if (all_stations_ || all.size() < 2 || useful_begin_.empty()) return all;
+  if (effort_ == Effort::kExact || all.size() < 2 || useful_begin_.empty()) return all;
   const std::size_t pair =
       static_cast<std::size_t>(a) * static_cast<std::size_t>(model_.problem().sites) +
       static_cast<std::size_t>(b);

@@ -50,9 +50,12 @@ struct Dominance {
 /// a given route and of the exact search.
 class Crossing {
  public:
-  /// `all_stations`: every station in every gap (exact); otherwise only those that are not farther
-  /// from both ends than another one.
-  Crossing(const Model& model, int kind, bool all_stations);
+  enum class Effort {
+    kExact,   ///< every station in every gap, all labels
+    kThrifty  ///< stations not farther from both ends than another; one after another only where
+              ///< one is not enough; few labels
+  };
+  Crossing(const Model& model, int kind, Effort effort);
 
   struct Passage {
     int station = 0;
@@ -64,16 +67,20 @@ class Crossing {
 
   /// Labels of a vehicle that is about to leave its start.
   void start(LabelSet& to);
-  /// From labels at the site `a` to labels on arrival at `b`. `need_j`: energy at `b` with which
-  /// the finish is reached without stations (infinity: unknown, or it cannot).
-  void cross(const LabelSet& from, int a, int b, double need_j, LabelSet& to);
+  /// What is known of the rest of a route on arrival somewhere.
+  struct Outlook {
+    double need_j = kNever;    ///< with which the finish is reached without stations, if at all
+    double latest_s = kNever;  ///< after which it is too late for some visit
+  };
+  /// From labels at the site `a` to labels on arrival at `b`.
+  void cross(const LabelSet& from, int a, int b, const Outlook& outlook, LabelSet& to);
   /// Waits for the task's window and works.
   void work(const LabelSet& from, Visit visit, LabelSet& to);
   /// cross() to the finish, with the energy that must be left there.
   void finish(const LabelSet& from, int a, LabelSet& to);
 
   /// Labels worked on so far: a measure of effort that is the same on every machine.
-  long effort() const { return effort_; }
+  long labels_made() const { return labels_made_; }
   const Dominance& dominance() const { return dominance_; }
 
  private:
@@ -87,7 +94,8 @@ class Crossing {
   }
   bool drive_curve(std::span<const CurvePoint> curve, const TourLeg& leg);
   void visit_stations(const Label& label, std::span<const CurvePoint> curve, int before, int a,
-                      int b);
+                      int b, double latest_s);
+  void trim(LabelSet& set) const;
   std::span<const int> useful_stations(int a, int b);
   bool as_near(int other, int station, int a, int b) const;
 
@@ -95,8 +103,8 @@ class Crossing {
   int kind_index_;
   const VehicleKind& kind_;
   Dominance dominance_;
-  bool all_stations_;
-  long effort_ = 0;
+  Effort effort_;
+  long labels_made_ = 0;
   std::vector<Passage> log_;
   std::vector<LabelSet> at_station_;
   std::vector<Pending> pending_;

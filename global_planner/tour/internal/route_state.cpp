@@ -9,8 +9,12 @@ namespace {
 
 bool near(double a, double b, double slack) { return a == b || std::abs(a - b) <= slack; }
 
-// The cell's labels and points at the end of the route's, moved there from another route.
-void copy_cell(const RouteState& from, RouteState::Cell cell, RouteState& to) {
+// The cell's labels and points at the end of another route's, shifted.
+void copy_cell(const RouteState& from, RouteState::Cell cell, double cost, double time,
+               RouteState& to) {
+  cell.cost += cost;
+  cell.time_s += time;
+  cell.earliest_s += time;
   const auto labels = from.labels.begin() + cell.first_label;
   const auto points = from.points.begin() + cell.first_point;
   cell.first_label = static_cast<int>(to.labels.size());
@@ -24,8 +28,14 @@ void copy_cell(const RouteState& from, RouteState::Cell cell, RouteState& to) {
 
 RouteEvaluator::RouteEvaluator(const Model& model) : model_(model) {
   for (int k = 0; k < static_cast<int>(model.kinds().size()); ++k) {
-    crossings_.emplace_back(model, k, false);
+    crossings_.emplace_back(model, k, Crossing::Effort::kThrifty);
   }
+}
+
+long RouteEvaluator::labels_made() const {
+  long sum = 0;
+  for (const Crossing& crossing : crossings_) sum += crossing.labels_made();
+  return sum;
 }
 
 RouteState RouteEvaluator::empty_route(int kind) const {
@@ -76,49 +86,34 @@ std::optional<RouteOutcome> RouteEvaluator::propagate(const RouteState& route,
     load(route, cell);
     base = {cell.cost, cell.time_s};
     for (int c = 0; result != nullptr && c <= edit.first; ++c) {
-      copy_cell(route, route.cells[static_cast<std::size_t>(c)], *result);
+      copy_cell(route, route.cells[static_cast<std::size_t>(c)], 0.0, 0.0, *result);
     }
   }
   int site = edit.first == 0
                  ? kind.vehicle.start
                  : model_.mode(route.visits[static_cast<std::size_t>(edit.first - 1)]).exit;
-  const auto advance = [&](Visit visit, double need) {
-    if (!step(route.kind, site, visit, need)) return false;
+  const auto advance = [&](Visit visit, const Crossing::Outlook& outlook) {
+    crossing.cross(set_, site, model_.mode(visit).entry, outlook, arrived_);
+    crossing.work(arrived_, visit, set_);
+    if (set_.empty()) return false;
     const Base change = normalise(set_);
     base = {base.cost + change.cost, base.time_s + change.time_s};
     if (result != nullptr) store(*result, base);
     site = model_.mode(visit).exit;
     return true;
   };
-  // Energy needs of the new visits, from the last to the first.
-  needs_.assign(edit.visits.size(), 0.0);
-  double need =
-      route.visits.empty() ? kind.finish_need_j : route.need_j[static_cast<std::size_t>(edit.last)];
-  int to = edit.last < route.size()
-               ? model_.mode(route.visits[static_cast<std::size_t>(edit.last)]).entry
-               : kind.vehicle.finish;
-  for (std::size_t i = edit.visits.size(); i-- > 0;) {
-    const Visit visit = edit.visits[i];
-    need = need_before(model_.way(route.kind, model_.mode(visit).exit, to), need, kind.battery);
-    need = need_before(model_.work(route.kind, visit), need, kind.battery);
-    to = model_.mode(visit).entry;
-    needs_[i] = need;
-  }
+  look_ahead(route, edit);
   for (std::size_t i = 0; i < edit.visits.size(); ++i) {
-    if (!advance(edit.visits[i], needs_[i])) return {};
+    if (!advance(edit.visits[i], outlooks_[i])) return {};
   }
   for (int k = edit.last; k < route.size(); ++k) {
     const auto index = static_cast<std::size_t>(k);
-    if (!advance(route.visits[index], route.need_j[index])) return {};
+    if (!advance(route.visits[index], {route.need_j[index], route.latest_s[index]})) return {};
     const RouteState::Cell& old = route.cells[index + 1];
     if (!same(route, old)) continue;
     const Base shift{base.cost - old.cost, base.time_s - old.time_s};
     for (std::size_t c = index + 2; result != nullptr && c < route.cells.size(); ++c) {
-      RouteState::Cell cell = route.cells[c];
-      cell.cost += shift.cost;
-      cell.time_s += shift.time_s;
-      cell.earliest_s += shift.time_s;
-      copy_cell(route, cell, *result);
+      copy_cell(route, route.cells[c], shift.cost, shift.time_s, *result);
     }
     return shifted(route, shift);
   }
@@ -131,11 +126,32 @@ std::optional<RouteOutcome> RouteEvaluator::propagate(const RouteState& route,
   return outcome(route.kind, base);
 }
 
-bool RouteEvaluator::step(int kind, int site, Visit visit, double need_j) {
-  Crossing& crossing = crossings_[static_cast<std::size_t>(kind)];
-  crossing.cross(set_, site, model_.mode(visit).entry, need_j, arrived_);
-  crossing.work(arrived_, visit, set_);
-  return !set_.empty();
+// Outlooks at the edit's new visits, from the last to the first.
+void RouteEvaluator::look_ahead(const RouteState& route, const RouteEdit& edit) {
+  const VehicleKind& kind = model_.kind(route.kind);
+  const auto last = static_cast<std::size_t>(edit.last);
+  Crossing::Outlook next{kind.finish_need_j, kind.vehicle.latest_s + model_.time_slack()};
+  if (!route.visits.empty()) next = {route.need_j[last], route.latest_s[last]};
+  int to = edit.last < route.size() ? model_.mode(route.visits[last]).entry : kind.vehicle.finish;
+  outlooks_.resize(edit.visits.size());
+  for (std::size_t i = edit.visits.size(); i-- > 0;) {
+    next = before(route.kind, edit.visits[i], to, next);
+    to = model_.mode(edit.visits[i]).entry;
+    outlooks_[i] = next;
+  }
+}
+
+// The outlook on arrival at a visit, from that on arrival at the site after it.
+Crossing::Outlook RouteEvaluator::before(int kind, Visit visit, int to,
+                                         const Crossing::Outlook& next) const {
+  const BatteryLimits& battery = model_.kind(kind).battery;
+  const TourLeg& work = model_.work(kind, visit);
+  const TourLeg& way = model_.way(kind, model_.mode(visit).exit, to);
+  if (model_.timeless())
+    return {need_before(work, need_before(way, next.need_j, battery), battery), kNever};
+  return {need_before(work, need_before(way, next.need_j, battery), battery),
+          std::min(model_.task(visit.task).latest_s + model_.time_slack(),
+                   next.latest_s - way.duration_s - work.duration_s)};
 }
 
 // The best label at the finish that is in time.
@@ -220,24 +236,21 @@ void RouteEvaluator::store(RouteState& route, const Base& base) const {
   route.cells.push_back(cell);
 }
 
-// Needs and latest times of the rest of the route, from its finish backwards.
+// Outlooks at all visits, from the finish backwards.
 void RouteEvaluator::look_ahead(RouteState& route) const {
   const VehicleKind& kind = model_.kind(route.kind);
   const std::size_t n = route.visits.size();
-  route.need_j.assign(n + 1, kind.finish_need_j);
-  route.latest_s.assign(n + 1, kind.vehicle.latest_s + model_.time_slack());
+  Crossing::Outlook next{kind.finish_need_j, kind.vehicle.latest_s + model_.time_slack()};
+  route.need_j.assign(n + 1, next.need_j);
+  route.latest_s.assign(n + 1, next.latest_s);
   route.load = 0.0;
   int to = kind.vehicle.finish;
   for (std::size_t i = n; i-- > 0;) {
-    const Visit visit = route.visits[i];
-    const TourLeg& work = model_.work(route.kind, visit);
-    const TourLeg& way = model_.way(route.kind, model_.mode(visit).exit, to);
-    route.need_j[i] =
-        need_before(work, need_before(way, route.need_j[i + 1], kind.battery), kind.battery);
-    route.latest_s[i] = std::min(model_.task(visit.task).latest_s + model_.time_slack(),
-                                 route.latest_s[i + 1] - way.duration_s - work.duration_s);
-    route.load += model_.task(visit.task).demand;
-    to = model_.mode(visit).entry;
+    next = before(route.kind, route.visits[i], to, next);
+    route.need_j[i] = next.need_j;
+    route.latest_s[i] = next.latest_s;
+    route.load += model_.task(route.visits[i].task).demand;
+    to = model_.mode(route.visits[i]).entry;
   }
 }
 

@@ -65,6 +65,7 @@ class RouteEvaluator {
   /// Makes the edit. False, with the route unchanged, if it cannot be driven any more.
   bool apply(RouteState& route, const RouteEdit& edit);
   Crossing& crossing(int kind) { return crossings_[static_cast<std::size_t>(kind)]; }
+  long labels_made() const;
 
  private:
   struct Base {
@@ -75,7 +76,6 @@ class RouteEvaluator {
 
   std::optional<RouteOutcome> propagate(const RouteState& route, const RouteEdit& edit,
                                         RouteState* result);
-  bool step(int kind, int site, Visit visit, double need_j);
   std::optional<RouteOutcome> outcome(int kind, const Base& base) const;
   std::optional<RouteOutcome> shifted(const RouteState& route, const Base& shift);
   Base normalise(LabelSet& set) const;
@@ -83,13 +83,15 @@ class RouteEvaluator {
   void load(const RouteState& route, const RouteState::Cell& cell);
   void store(RouteState& route, const Base& base) const;
   void look_ahead(RouteState& route) const;
+  void look_ahead(const RouteState& route, const RouteEdit& edit);
+  Crossing::Outlook before(int kind, Visit visit, int to, const Crossing::Outlook& next) const;
 
   const Model& model_;
   std::vector<Crossing> crossings_;  // of each kind
   LabelSet set_;                     // at hand, normalised
   LabelSet arrived_;
   RouteState scratch_;
-  std::vector<double> needs_;
+  std::vector<Crossing::Outlook> outlooks_;  // of the edit at hand
 };
 
 }  // namespace headland::tour

@@ -152,16 +152,19 @@ void RuinRecreate::save_vehicles(long rounds) {
   plan_.limit_vehicles(plan_.vehicles());
 }
 
-void RuinRecreate::anneal(long rounds) {
+void RuinRecreate::anneal(long rounds, long labels) {
   const double unit = temperature_unit(model_, near_);
-  double temperature = kHot * unit;
-  const double cooling =
-      std::pow(kCold / kHot, 1.0 / static_cast<double>(std::max<long>(1, rounds)));
+  const long labels_before = plan_.labels_made();
   double current = plan_.cost();
   double best = current;
   auto best_visits = plan_.visits();
   const std::size_t out = missing().size();
-  for (long i = 0; i < rounds; ++i, temperature *= cooling) {
+  for (long i = 0; i < rounds; ++i) {
+    const double done = std::max(
+        static_cast<double>(i) / static_cast<double>(rounds),
+        static_cast<double>(plan_.labels_made() - labels_before) / static_cast<double>(labels));
+    if (done >= 1.0) break;
+    const double temperature = unit * kHot * std::pow(kCold / kHot, done);
     best_cost_ = std::min(best_cost_, best);
     if (!poll()) break;
     ruin();

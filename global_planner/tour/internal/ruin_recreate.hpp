@@ -28,8 +28,9 @@ class RuinRecreate {
   bool place_all(long rounds);
   /// Tries to do without one vehicle after the other, in this many rounds each.
   void save_vehicles(long rounds);
-  /// Anneals from the present plan; ends with the best found.
-  void anneal(long rounds);
+  /// Anneals from the present plan, for so many rounds or labels, whichever ends first; ends with
+  /// the best found.
+  void anneal(long rounds, long labels);
 
   bool stopped() const { return stopped_; }
   /// Rounds that will be made in all, for the progress.
