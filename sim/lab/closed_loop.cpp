@@ -109,7 +109,8 @@ class Driver {
     }
     progress_s_ = 0.0;
     if (stage().path.empty()) return arrive(time);
-    tracker_->start(Reference{stage().path, leg_speed_});
+    reference_ = Reference{stage().path, leg_speed_};  // the tracker keeps a pointer to it
+    tracker_->start(reference_);
     // Nothing drives a stage at less than a tenth of its planned pace.
     give_up_at_ = time + 60.0 + 10.0 * planned_duration(stage());
     state_ = State::kDriving;
@@ -272,6 +273,7 @@ class Driver {
   SimulatedVehicle vehicle_;
   std::unique_ptr<Tracker> tracker_;
   std::vector<double> leg_speed_;
+  Reference reference_;
   std::vector<double> worst_;  // largest cross-track error of each leg
   Run run_;
   State state_ = State::kDriving;
