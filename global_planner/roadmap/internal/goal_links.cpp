@@ -7,11 +7,14 @@
 namespace headland::internal {
 namespace {
 
-constexpr std::size_t kNearNodes = 48;   // tried by the roadmap's curve ...
-constexpr std::size_t kNearest = 16;     // ... and by Dubins curves
-constexpr std::size_t kMostLinks = 16;   // of a goal, each way
-constexpr std::size_t kEnoughLinks = 4;  // no Dubins curves then
-constexpr std::size_t kNearGoals = 16;   // joined directly
+// Tried for a goal, and kept of them at most.
+struct Effort {
+  EdgeCurve curve;
+  std::size_t nodes;
+  std::size_t links;
+};
+constexpr Effort kEfforts[] = {{EdgeCurve::kClothoid, 48, 16}, {EdgeCurve::kDubins, 16, 12}};
+constexpr std::size_t kNearGoals = 16;  // joined directly
 
 template <class PositionOf>
 std::vector<int> nearest(const Point2& p, int count, std::size_t most, PositionOf position_of) {
@@ -63,16 +66,14 @@ class Linker {
   template <class Drive>
   void link(int goal, const Pose2& pose, std::vector<GoalLink>& links, Drive drive) const {
     const double margin = margin_at(pose);
-    const auto near = nearest(pose.position(), static_cast<int>(graph_.nodes.size()), kNearNodes,
-                              [&](int i) { return graph_.pose(2 * i).position(); });
-    const std::size_t before = links.size();
-    for (const EdgeCurve curve : {EdgeCurve::kClothoid, EdgeCurve::kDubins}) {
-      const std::size_t tried = curve == EdgeCurve::kClothoid ? near.size() : kNearest;
-      if (links.size() - before >= kEnoughLinks) return;
-      for (std::size_t i = 0; i < std::min(tried, near.size()); ++i) {
-        for (const Heading heading : {2 * near[i], 2 * near[i] + 1}) {
-          if (links.size() - before >= kMostLinks) return;
-          if (auto way = drive(graph_.pose(heading), curve, margin)) {
+    for (const Effort& effort : kEfforts) {
+      const auto near = nearest(pose.position(), static_cast<int>(graph_.nodes.size()),
+                                effort.nodes, [&](int i) { return graph_.pose(2 * i).position(); });
+      const std::size_t most = links.size() + effort.links;
+      for (const int node : near) {
+        for (const Heading heading : {2 * node, 2 * node + 1}) {
+          if (links.size() >= most) break;
+          if (auto way = drive(graph_.pose(heading), effort.curve, margin)) {
             links.push_back({goal, heading, way->first, way->second});
           }
         }

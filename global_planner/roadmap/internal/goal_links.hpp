@@ -7,9 +7,9 @@
 
 namespace headland::internal {
 
-/// Joins goals to the nearest nodes of the roadmap, and to the nearest other goals: by the
-/// roadmap's curve, or where too few of those fit by Dubins curves, which turn on the spot as far
-/// as a vehicle can.
+/// Joins goals to the nearest nodes of the roadmap, and to the nearest other goals, by clothoids;
+/// and by Dubins curves, which turn round where no clothoid can: between goals only if no clothoid
+/// serves.
 GoalLinks link_goals(const std::vector<Site>& goals, const RoadGraph& graph,
                      const TrackMaker& tracks, double margin);
 

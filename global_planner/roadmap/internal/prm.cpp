@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -17,7 +16,7 @@
 #include <ompl/util/Console.h>
 
 #include "core/base/error.hpp"
-#include "core/base/random.hpp"
+#include "global_planner/roadmap/internal/pose_sampler.hpp"
 
 // The roadmap is undirected, as OMPL's is: a node is a place with a direction, which a vehicle may
 // pass in either heading, and an edge is a track that it may drive either way.
@@ -28,16 +27,10 @@ namespace ob = ompl::base;
 namespace og = ompl::geometric;
 using State = ob::SE2StateSpace::StateType;
 
-constexpr std::int64_t kDrawsPerSample = 4;
-constexpr std::size_t kNeighbors = 16;  // tried for each new node: those that a curve can join
+constexpr std::size_t kNeighbors = 16;  // joined to each new node, if so many can be
 constexpr std::size_t kFirstLook = 32;  // nearest nodes looked at for them
-constexpr std::size_t kLastLook = 256;
-constexpr int kMissesOfAKind = 200;
-// Of the nodes: those around corners of the border, and where those along the border begin.
-constexpr double kAtCorners = 0.25;
-constexpr double kAlongBorder = 0.6;
-constexpr double kCornerReach = 1.5;         // [turning radii]
-constexpr std::int64_t kMostMisses = 20000;  // draws in a row that do not fit: there is no room
+constexpr std::size_t kLastLook = 128;
+constexpr int kMostMisses = 20000;  // draws in a row that do not fit: there is no room
 
 Pose2 pose_of(const ob::State* state) {
   const auto* se2 = state->as<State>();
@@ -92,85 +85,25 @@ class FreeStates : public ob::StateValidityChecker {
   double margin_;
 };
 
-/// Direction [rad] of the border nearest to a point.
-double border_direction(const Region& region, const Point2& p) {
-  double least = std::numeric_limits<double>::infinity();
-  Point2 along(1.0, 0.0);
-  const auto look = [&](const Polyline& ring) {
-    for (std::size_t i = 0; i < ring.size(); ++i) {
-      const Point2& a = ring[i];
-      const Point2& b = ring[(i + 1) % ring.size()];
-      const double distance = distance_to_segment(p, a, b);
-      if (distance >= least) continue;
-      least = distance;
-      along = b - a;
-    }
-  };
-  for (const Polygon& polygon : region.polygons()) {
-    look(polygon.outer);
-    std::for_each(polygon.holes.begin(), polygon.holes.end(), look);
-  }
-  return std::atan2(along.y(), along.x());
-}
-
-/// Draws places and directions: around the border's corners, where ways bend; anywhere in the box
-/// around the area; and anywhere along the nearest border, as roads and headlands are driven. From
-/// our own stream: OMPL's generators share a global seed.
-class Sampler : public ob::ValidStateSampler {
+/// The sampler in OMPL's terms. Its numbers come from our own stream: OMPL's generators share a
+/// global seed.
+class FreeSampler : public ob::ValidStateSampler {
  public:
-  Sampler(const ob::SpaceInformation* space, const TrackMaker& tracks, RandomStream& random,
-          std::int64_t& draws)
-      : ob::ValidStateSampler(space), tracks_(tracks), random_(random), draws_(draws) {
-    for (const Polygon& polygon : tracks.drivable().polygons()) {
-      corners_.insert(corners_.end(), polygon.outer.begin(), polygon.outer.end());
-      for (const Polyline& hole : polygon.holes) {
-        corners_.insert(corners_.end(), hole.begin(), hole.end());
-      }
-    }
-  }
+  FreeSampler(const ob::SpaceInformation* space, PoseSampler& poses)
+      : ob::ValidStateSampler(space), poses_(poses) {}
 
   bool sample(ob::State* state) override {
-    // A kind is drawn for each node, not for each draw: corners are easier to hit than roads.
-    const double new_kind = random_.uniform();
-    const double u = random_.uniform();
-    const double v = random_.uniform();
-    const double turn = random_.uniform(0.0, kPi);
-    if (misses_ % kMissesOfAKind == 0) kind_ = new_kind;
-    ++draws_;
-    ++misses_;
-    const Pose2 pose = drawn(u, v, turn);
-    if (!tracks_.drivable().contains(pose.position())) return false;
-    set(state, pose);
-    if (kind_ >= kAlongBorder) {
-      const double along = border_direction(tracks_.drivable(), pose.position());
-      set(state, {pose.x, pose.y, along});
-    }
+    const auto pose = poses_.draw();
+    if (!pose) return false;
+    set(state, *pose);
     if (!si_->isValid(state)) return false;
-    misses_ = 0;
+    poses_.accept();
     return true;
   }
   bool sampleNear(ob::State*, const ob::State*, double) override { return false; }
 
  private:
-  Pose2 drawn(double u, double v, double turn) const {
-    if (kind_ < kAtCorners) {
-      const auto i =
-          static_cast<std::size_t>(kind_ / kAtCorners * static_cast<double>(corners_.size()));
-      const double reach = kCornerReach * tracks_.radius() * std::sqrt(u);
-      return {corners_[i].x() + reach * std::cos(2.0 * kPi * v),
-              corners_[i].y() + reach * std::sin(2.0 * kPi * v), turn};
-    }
-    const auto& bounds = si_->getStateSpace()->as<ob::SE2StateSpace>()->getBounds();
-    return {bounds.low[0] + u * (bounds.high[0] - bounds.low[0]),
-            bounds.low[1] + v * (bounds.high[1] - bounds.low[1]), turn};
-  }
-
-  const TrackMaker& tracks_;
-  RandomStream& random_;
-  std::int64_t& draws_;
-  std::vector<Point2> corners_;
-  double kind_ = 0.0;
-  int misses_ = 0;  // since the last node
+  PoseSampler& poses_;
 };
 
 /// Finds a drivable track for a motion. It remembers those of the node at hand, which are asked for
@@ -317,19 +250,11 @@ class QuietOmpl {
   ompl::msg::LogLevel level_;
 };
 
-ob::RealVectorBounds box_around(const Region& region) {
-  Point2 low = region.polygons().front().outer.front();
-  Point2 high = low;
-  for (const Polygon& polygon : region.polygons()) {
-    for (const Point2& p : polygon.outer) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-  }
+ob::RealVectorBounds bounds_of(const PoseSampler& poses) {
   ob::RealVectorBounds bounds(2);
   for (unsigned i = 0; i < 2; ++i) {
-    bounds.setLow(i, low[i]);
-    bounds.setHigh(i, high[i]);
+    bounds.setLow(i, poses.low()[i]);
+    bounds.setHigh(i, poses.high()[i]);
   }
   return bounds;
 }
@@ -364,18 +289,15 @@ void grow(RoadGraph& graph, const TrackMaker& tracks, int samples, std::uint64_t
   graph.samples = std::max(graph.samples, samples);
   if (full || tracks.drivable().polygons().empty()) return;
   const QuietOmpl quiet;
-  RandomStream random(seed, "roadmap");
-  for (std::int64_t i = 0; i < kDrawsPerSample * graph.draws; ++i) random.uniform();
-
+  PoseSampler poses(tracks.drivable(), tracks.radius(), seed, graph.draws);
   const auto space = std::make_shared<DirectionSpace>(tracks.radius());
-  space->setBounds(box_around(tracks.drivable()));
+  space->setBounds(bounds_of(poses));
   const auto information = std::make_shared<ob::SpaceInformation>(space);
   information->setStateValidityChecker(std::make_shared<FreeStates>(information, tracks, margin));
   const auto motions = std::make_shared<DrivableMotions>(information, tracks, margin);
   information->setMotionValidator(motions);
-  information->setValidStateSamplerAllocator([&](const ob::SpaceInformation* si) {
-    return std::make_shared<Sampler>(si, tracks, random, graph.draws);
-  });
+  information->setValidStateSamplerAllocator(
+      [&](const ob::SpaceInformation* si) { return std::make_shared<FreeSampler>(si, poses); });
   const auto problem = std::make_shared<ob::ProblemDefinition>(information);
   problem->setOptimizationObjective(
       std::make_shared<EdgeEnergy>(information, *motions, graph.edges));
@@ -385,13 +307,11 @@ void grow(RoadGraph& graph, const TrackMaker& tracks, int samples, std::uint64_t
   prm.setConnectionStrategy(DrivableNeighbors(prm, *motions));
   prm.setup();
   prm.restore(graph);
-  unsigned long nodes = 0;
-  std::int64_t last_found = graph.draws;
   prm.growRoadmap(ob::PlannerTerminationCondition([&] {
-    if (prm.milestoneCount() != nodes) last_found = graph.draws;
-    nodes = prm.milestoneCount();
-    return nodes >= static_cast<unsigned long>(samples) || graph.draws - last_found >= kMostMisses;
+    return prm.milestoneCount() >= static_cast<unsigned long>(samples) ||
+           poses.misses() >= kMostMisses;
   }));
+  graph.draws = poses.draws();
   take_over(prm, graph);
 }
 

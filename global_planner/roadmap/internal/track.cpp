@@ -41,8 +41,8 @@ TrackMaker::TrackMaker(const Region& drivable, const Ground& ground, const Vehic
       radius_(vehicle.turning_radius()),
       step_(ground.flat() ? kStep : std::min(kStep, ground.step())),
       both_(vehicle.footprint),
-      most_pitch_(std::tan(deg_to_rad(vehicle.max_pitch_deg - kSlopeSlack))),
-      most_roll_(std::tan(deg_to_rad(vehicle.max_roll_deg - kSlopeSlack))) {
+      most_pitch_(std::tan(deg_to_rad(std::max(0.0, vehicle.max_pitch_deg - kSlopeSlack)))),
+      most_roll_(std::tan(deg_to_rad(std::max(0.0, vehicle.max_roll_deg - kSlopeSlack)))) {
   both_.front_m = std::max(both_.front_m, both_.rear_m);
   both_.rear_m = both_.front_m;
   // Every point of the outline turns about a centre no further away than this.

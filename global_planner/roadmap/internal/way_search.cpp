@@ -60,95 +60,109 @@ void WaySearch::add_arcs() {
   for (std::size_t h = 1; h < first_arc_.size(); ++h) first_arc_[h] += first_arc_[h - 1];
 }
 
-/// How a heading was reached, and from where; by a departure of the goal, if from none.
+/// How a place was reached: from which heading, if not by the goal's own link, and over what.
 struct WaySearch::Reached {
   double cost = kInfinity;  // reduced
   Heading from = -1;
   Leg leg;
 };
 
+/// A search from one goal.
+struct WaySearch::Spread {
+  std::vector<Reached> headings;
+  std::vector<Reached> goals;
+  using Entry = std::pair<double, Heading>;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+
+  void reach_heading(Heading heading, const Reached& way) {
+    Reached& place = headings[static_cast<std::size_t>(heading)];
+    if (!(way.cost < place.cost)) return;
+    place = way;
+    queue.push({way.cost, heading});
+  }
+  void reach_goal(int goal, const Reached& way) {
+    Reached& place = goals[static_cast<std::size_t>(goal)];
+    if (way.cost < place.cost) place = way;
+  }
+};
+
 GoalGraph WaySearch::ways(const std::vector<Site>& sites, const GoalLinks& links) const {
   const int goals = static_cast<int>(sites.size());
-  std::vector<std::vector<int>> arrivals_at(static_cast<std::size_t>(graph_.headings()));
-  for (std::size_t i = 0; i < links.arrivals.size(); ++i) {
-    arrivals_at[static_cast<std::size_t>(links.arrivals[i].heading)].push_back(static_cast<int>(i));
+  ArrivalsAt arrivals_at(static_cast<std::size_t>(graph_.headings()));
+  for (const GoalLink& link : links.arrivals) {
+    arrivals_at[static_cast<std::size_t>(link.heading)].push_back(&link);
   }
   std::vector<GoalGraph::Edge> edges;
   edges.reserve(static_cast<std::size_t>(goals * goals));
-  for (int goal = 0; goal < goals; ++goal) search(goal, sites, links, arrivals_at, edges);
+  for (int from = 0; from < goals; ++from) {
+    const Spread spread = search(from, sites, links, arrivals_at);
+    for (int to = 0; to < goals; ++to) {
+      edges.push_back(from == to ? GoalGraph::Edge{} : way(spread, to));
+    }
+  }
   return {goals, std::move(edges)};
 }
 
-// Dijkstra from one goal's departures to all goals' arrivals.
-void WaySearch::search(int goal, const std::vector<Site>& sites, const GoalLinks& links,
-                       const std::vector<std::vector<int>>& arrivals_at,
-                       std::vector<GoalGraph::Edge>& edges) const {
-  const Point2 start = sites[static_cast<std::size_t>(goal)].depart.position();
-  std::vector<Reached> reached(static_cast<std::size_t>(graph_.headings()));
-  std::vector<Reached> arrived(sites.size());
-  using Entry = std::pair<double, Heading>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  const auto offer = [](Reached& place, const Reached& way) {
-    if (way.cost < place.cost) place = way;
-    return place.cost == way.cost;
-  };
-  for (const DirectLink& link : links.direct) {
-    if (link.from != goal) continue;
-    const auto to = static_cast<std::size_t>(link.to);
-    const double cost = reduced_cost(link.cost, start, sites[to].arrive.position());
-    offer(arrived[to], {std::max(0.0, cost), -1, {&link.track, false, link.cost}});
-  }
-  for (const GoalLink& link : links.departures) {
-    if (link.goal != goal) continue;
-    const double cost = reduced_cost(link.cost, start, graph_.pose(link.heading).position());
-    const Reached way{std::max(0.0, cost), -1, {&link.track, false, link.cost}};
-    if (offer(reached[static_cast<std::size_t>(link.heading)], way)) {
-      queue.push({way.cost, link.heading});
-    }
-  }
-  while (!queue.empty()) {
-    const auto [cost, heading] = queue.top();
-    queue.pop();
+// Dijkstra 1959, from one goal's departures to all goals' arrivals.
+WaySearch::Spread WaySearch::search(int goal, const std::vector<Site>& sites,
+                                    const GoalLinks& links, const ArrivalsAt& arrivals_at) const {
+  Spread spread;
+  spread.headings.resize(static_cast<std::size_t>(graph_.headings()));
+  spread.goals.resize(sites.size());
+  start(goal, sites, links, spread);
+  while (!spread.queue.empty()) {
+    const auto [cost, heading] = spread.queue.top();
+    spread.queue.pop();
     const auto h = static_cast<std::size_t>(heading);
-    if (cost > reached[h].cost) continue;
-    for (const int i : arrivals_at[h]) {
-      const GoalLink& link = links.arrivals[static_cast<std::size_t>(i)];
-      const auto to = static_cast<std::size_t>(link.goal);
-      const double more =
-          reduced_cost(link.cost, graph_.pose(heading).position(), sites[to].arrive.position());
-      offer(arrived[to], {cost + std::max(0.0, more), heading, {&link.track, false, link.cost}});
+    if (cost > spread.headings[h].cost) continue;
+    for (const GoalLink* link : arrivals_at[h]) {
+      const Point2 end = sites[static_cast<std::size_t>(link->goal)].arrive.position();
+      const double more = reduced_cost(link->cost, graph_.pose(heading).position(), end);
+      spread.reach_goal(link->goal,
+                        {cost + std::max(0.0, more), heading, {&link->track, false, link->cost}});
     }
     for (int a = first_arc_[h]; a < first_arc_[h + 1]; ++a) {
       const Arc& arc = arcs_[static_cast<std::size_t>(a)];
       const RoadEdge& edge = graph_.edges[static_cast<std::size_t>(arc.edge)];
-      Reached& place = reached[static_cast<std::size_t>(arc.to)];
-      if (!(cost + arc.cost < place.cost)) continue;
-      place = {cost + arc.cost,
-               heading,
-               {&edge.track, arc.backwards, arc.backwards ? edge.backwards : edge.forwards}};
-      queue.push({place.cost, arc.to});
+      const DriveCost& drawn = arc.backwards ? edge.backwards : edge.forwards;
+      spread.reach_heading(arc.to, {cost + arc.cost, heading, {&edge.track, arc.backwards, drawn}});
     }
   }
-  for (std::size_t to = 0; to < sites.size(); ++to) {
-    if (static_cast<int>(to) == goal) {
-      edges.emplace_back();
-      continue;
-    }
-    if (arrived[to].cost == kInfinity) {
-      edges.push_back(no_way());
-      continue;
-    }
-    std::vector<const Leg*> legs{&arrived[to].leg};
-    for (Heading h = arrived[to].from; h >= 0; h = reached[static_cast<std::size_t>(h)].from) {
-      legs.push_back(&reached[static_cast<std::size_t>(h)].leg);
-    }
-    GoalGraph::Edge edge;
-    for (auto leg = legs.rbegin(); leg != legs.rend(); ++leg) {
-      edge.cost += (*leg)->cost;
-      edge.path.append((*leg)->track->path((*leg)->backwards));
-    }
-    edges.push_back(std::move(edge));
+  return spread;
+}
+
+void WaySearch::start(int goal, const std::vector<Site>& sites, const GoalLinks& links,
+                      Spread& spread) const {
+  const Point2 begin = sites[static_cast<std::size_t>(goal)].depart.position();
+  for (const DirectLink& link : links.direct) {
+    if (link.from != goal) continue;
+    const Point2 end = sites[static_cast<std::size_t>(link.to)].arrive.position();
+    const double cost = std::max(0.0, reduced_cost(link.cost, begin, end));
+    spread.reach_goal(link.to, {cost, -1, {&link.track, false, link.cost}});
   }
+  for (const GoalLink& link : links.departures) {
+    if (link.goal != goal) continue;
+    const Point2 end = graph_.pose(link.heading).position();
+    const double cost = std::max(0.0, reduced_cost(link.cost, begin, end));
+    spread.reach_heading(link.heading, {cost, -1, {&link.track, false, link.cost}});
+  }
+}
+
+GoalGraph::Edge WaySearch::way(const Spread& spread, int to) const {
+  const Reached& arrived = spread.goals[static_cast<std::size_t>(to)];
+  if (arrived.cost == kInfinity) return no_way();
+  std::vector<const Leg*> legs{&arrived.leg};
+  for (Heading h = arrived.from; h >= 0;) {
+    const Reached& place = spread.headings[static_cast<std::size_t>(h)];
+    legs.push_back(&place.leg);
+    h = place.from;
+  }
+  GoalGraph::Edge edge;
+  for (auto leg = legs.rbegin(); leg != legs.rend(); ++leg) {
+    edge.cost += (*leg)->cost;
+    edge.path.append((*leg)->track->path((*leg)->backwards));
+  }
+  return edge;
 }
 
 }  // namespace headland::internal

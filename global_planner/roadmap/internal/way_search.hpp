@@ -59,11 +59,15 @@ class WaySearch {
     double cost = 0.0;  // reduced
   };
   struct Reached;
+  struct Spread;
+  using ArrivalsAt = std::vector<std::vector<const GoalLink*>>;  // by heading
   double potential(const Point2& p_map) const;
   void add_arcs();
-  void search(int goal, const std::vector<Site>& sites, const GoalLinks& links,
-              const std::vector<std::vector<int>>& arrivals_at,
-              std::vector<GoalGraph::Edge>& edges) const;
+  Spread search(int goal, const std::vector<Site>& sites, const GoalLinks& links,
+                const ArrivalsAt& arrivals_at) const;
+  void start(int goal, const std::vector<Site>& sites, const GoalLinks& links,
+             Spread& spread) const;
+  GoalGraph::Edge way(const Spread& spread, int to) const;
 
   const RoadGraph& graph_;
   const TrackMaker& tracks_;

@@ -91,6 +91,16 @@ TEST(Roadmap, SaysSoWhereTheVehicleFitsNowhere) {
   EXPECT_EQ(empty.error().code, ErrorCode::kNoPath);
 }
 
+TEST(Roadmap, ServesVehiclesForLevelGroundOnLevelGround) {
+  Vehicle vehicle = robot();
+  vehicle.max_pitch_deg = 0.1;
+  vehicle.max_roll_deg = 0.1;
+  const Field field(50.0, {});
+  EXPECT_EQ(built(field, vehicle, few_samples(20)).nodes(), 20);
+  EXPECT_FALSE(
+      Roadmap::build(small_field().region, small_field().ground, vehicle, few_samples(20)));
+}
+
 TEST(Roadmap, KeepsOffSlopesThatAreTooSteep) {
   // A bank of 30 degrees across the field, with a gentle ramp at its eastern end.
   const auto bank = [](double x, double y) {
