@@ -418,6 +418,8 @@ DriveCost Transitions::cost(int from, int to) const {
 bool Transitions::offer(int from, int to, const DriveCost& cost, Path path) {
   Way& w = impl_->way(from, to);
   if (from == to || path.empty()) return false;
+  // A headland turn is not given up merely because open ground is driven faster.
+  if (kind(from, to) == LegKind::kTurn) return false;
   if (w.type != WayType::kNone && impl_->value(w.cost) <= impl_->value(cost)) return false;
   w = {cost, static_cast<int>(impl_->given.size()), WayType::kGiven};
   impl_->given.push_back(std::move(path));
