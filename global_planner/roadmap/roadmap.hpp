@@ -21,7 +21,7 @@ struct RoadmapOptions {
   std::uint64_t seed = 1;
   EdgeCurve curve = EdgeCurve::kClothoid;
   double margin_m = 0.1;  ///< kept between the outline and the edge of the drivable area
-  Objective objective = Objective::kEnergy;
+  CostWeights objective = Objective::kEnergy;
   /// Folder of cache files; empty: none. The file's name is a hash of everything the roadmap
   /// depends on (area, terrain, soil, vehicle, options, format version).
   std::filesystem::path cache;

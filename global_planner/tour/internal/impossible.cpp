@@ -113,7 +113,7 @@ std::optional<Error> why_impossible(const Model& model, int task) {
       return error(ErrorCode::kTaskDoesNotFit, "no vehicle gets there and back in time");
     case Reason::kEnergy:
       return error(ErrorCode::kEnergyInfeasible,
-                   fmt::format("no vehicle reaches it and a charger again: short of {:.1f} Wh",
+                   fmt::format("no vehicle reaches it and a charger again: short of {:.4g} Wh",
                                nearest.missing_j / kJoulesPerWattHour));
     case Reason::kBoth:
       return error(ErrorCode::kEnergyInfeasible,
