@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -30,7 +29,8 @@ constexpr int kNearTasks = 100;
 constexpr int kMostExactTasks = 18;        // 2^n sets are kept
 constexpr long kExactEffort = 60'000'000;  // labels
 constexpr std::size_t kLongestExactRoute = 100;
-constexpr long kLabelsPerRound = 1'000;
+// Where routes are long a round takes more labels; anneals get shorter for it.
+constexpr long kLabelsPerRound = 4'000;
 constexpr int kMostPricedTasks = 200;
 constexpr long kRoundsForExact = 2'000;  // of ruin and recreate, for the upper bound
 constexpr long kFirstAnneal = 20'000;
@@ -135,14 +135,13 @@ class Search {
     }
     offer(routes_of(plan));
     if (exact() && find_exactly()) return;
-    search.save_vehicles(rounds / 4);
-    offer(routes_of(plan));
     // Ever longer anneals, so that one may end at any time.
-    long length = std::min(rounds, std::max(kFirstAnneal, rounds / 8));
+    long length = std::min(rounds, std::max(kFirstAnneal, usual_budget() / 8));
     for (long left = rounds; left > 0 && !search.stopped() && !proven(); length *= 2) {
-      if (left < 2 * length) length = left;
-      search.anneal(length, labels_for(length));
-      left -= length;
+      if (left / 2 < length) length = left;
+      search.save_vehicles(length / 4);
+      const long made = search.anneal(length, kLabelsPerRound * length);
+      left -= options_.iterations > 0 ? made : length;
       offer(routes_of(plan));
     }
     if (exact()) find_exactly();
@@ -151,14 +150,9 @@ class Search {
   long budget() const {
     if (exact()) return kRoundsForExact;
     if (options_.iterations > 0) return options_.iterations;
-    return 20'000 + 400L * model_.tasks();
+    return usual_budget();
   }
-
-  // Long routes take more labels a round; by default they get fewer rounds for it.
-  long labels_for(long rounds) const {
-    if (options_.iterations > 0) return std::numeric_limits<long>::max();
-    return std::max<long>(kLabelsPerRound * rounds, 1);
-  }
+  long usual_budget() const { return 20'000 + 400L * model_.tasks(); }
 
   // True if the best is proven.
   bool find_exactly() {

@@ -14,14 +14,14 @@ constexpr int kLongestTable = 4'000'000;  // pairs of sites whose useful station
 bool as_good(const Dominance& rule, const Label& better, std::span<const CurvePoint> curve,
              const Label& label, std::span<const CurvePoint> other) {
   const double saved = label.cost - better.cost + rule.cost_slack;
-  if (!rule.time_is_cost && saved < 0.0) return false;
-  const double lead = curve.size() == 1 && other.size() == 1
-                          ? (curve[0].energy_j >= other[0].energy_j - rule.energy_slack
-                                 ? other[0].time_s - curve[0].time_s
-                                 : -kNever)
-                          : least_lead(curve, other, rule.energy_slack);
-  if (lead == -kNever) return false;
-  return rule.time_is_cost ? saved + rule.time_price * lead >= 0.0 : lead >= -rule.time_slack;
+  const auto suffices = [&](double lead) {
+    return rule.time_is_cost ? saved + rule.time_price * lead >= 0.0
+                             : saved >= 0.0 && lead >= -rule.time_slack;
+  };
+  if (curve.back().energy_j < other.back().energy_j - rule.energy_slack) return false;
+  if (!suffices(other.front().time_s - curve.front().time_s)) return false;  // no lead is greater
+  if (curve.size() == 1 && other.size() == 1) return true;
+  return suffices(least_lead(curve, other, rule.energy_slack));
 }
 
 }  // namespace

@@ -152,14 +152,15 @@ void RuinRecreate::save_vehicles(long rounds) {
   plan_.limit_vehicles(plan_.vehicles());
 }
 
-void RuinRecreate::anneal(long rounds, long labels) {
+long RuinRecreate::anneal(long rounds, long labels) {
   const double unit = temperature_unit(model_, near_);
   const long labels_before = plan_.labels_made();
   double current = plan_.cost();
   double best = current;
   auto best_visits = plan_.visits();
   const std::size_t out = missing().size();
-  for (long i = 0; i < rounds; ++i) {
+  long i = 0;
+  for (; i < rounds; ++i) {
     const double done = std::max(
         static_cast<double>(i) / static_cast<double>(rounds),
         static_cast<double>(plan_.labels_made() - labels_before) / static_cast<double>(labels));
@@ -183,6 +184,7 @@ void RuinRecreate::anneal(long rounds, long labels) {
     }
   }
   plan_.restore(best_visits);
+  return i;
 }
 
 // Strings around a random task, one from each of several routes (several from one where there are

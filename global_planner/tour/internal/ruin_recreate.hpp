@@ -29,8 +29,8 @@ class RuinRecreate {
   /// Tries to do without one vehicle after the other, in this many rounds each.
   void save_vehicles(long rounds);
   /// Anneals from the present plan, for so many rounds or labels, whichever ends first; ends with
-  /// the best found.
-  void anneal(long rounds, long labels);
+  /// the best found. Returns the rounds made.
+  long anneal(long rounds, long labels);
 
   bool stopped() const { return stopped_; }
   /// Rounds that will be made in all, for the progress.
