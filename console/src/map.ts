@@ -23,6 +23,7 @@ import {Bounds, View, empty_bounds, extend, nearest_sample} from './view';
 const kMaxZoom = 400;
 const kFillOnRelief = 0.45; // opacity of areas above the relief
 const kBandWidth = 0.6; // m; of a plan below a driven path
+const kFleetBand = 6;  // px; the same where there are several vehicles
 const kGrab = 28; // px within which the pointer catches the nearest sample
 
 export class MapView {
@@ -269,8 +270,10 @@ export class MapView {
   private paint_ground(context: CanvasRenderingContext2D, layer: Layer, scale: number, theme: Theme): void {
     const band = this.has_driven && /^(plan|vehicle)_/.test(layer.key);
     const on_relief = layer.fill !== undefined && this.layers.some((l) => l.key === 'terrain' && !this.hidden.has(l));
-    context.globalAlpha = band ? 0.32 : on_relief ? kFillOnRelief : 1;
-    paint_layer(context, band ? {...layer, width: Math.min(7, kBandWidth * scale), dash: []} : layer, this.paths.get(layer)!, scale, theme);
+    const fleet = this.vehicles.length > 1; // whose band alone tells whose driven path it is
+    const width = fleet ? kFleetBand : Math.min(7, kBandWidth * scale);
+    context.globalAlpha = band ? (fleet ? 0.6 : 0.32) : on_relief ? kFillOnRelief : 1;
+    paint_layer(context, band ? {...layer, width, dash: []} : layer, this.paths.get(layer)!, scale, theme);
     context.globalAlpha = 1;
   }
 
