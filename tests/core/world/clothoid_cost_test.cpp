@@ -28,7 +28,7 @@ Path short_arcs(const Path& path, int count) {
 
 TEST(ClothoidCost, IsThatOfManyShortArcs) {
   Vehicle vehicle;
-  vehicle.energy.turn_loss_mps = 0.5;
+  vehicle.energy.turn_loss_ratio = 0.5;
   vehicle.energy.recuperation_efficiency_ratio = 0.5;
   HillSpec hills;
   hills.relief_m = 10.0;
