@@ -87,7 +87,7 @@ std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
 }
 
 TaskTerms terms_of(const TaskConfig& task) {
-  TaskTerms terms{task.value, task.earliest_s, kForever};
+  TaskTerms terms{task.value_ratio, task.earliest_s, kForever};
   if (task.latest_s) terms.latest_s = *task.latest_s;
   return terms;
 }

@@ -67,7 +67,7 @@ struct TaskConfig {
   std::vector<std::string> places;
   double accuracy_m = 1.0;
   double dwell_s = 0.0;
-  double value = 1.0;
+  double value_ratio = 1.0;
   double earliest_s = 0.0;
   std::optional<double> latest_s;
 
@@ -82,7 +82,7 @@ struct TaskConfig {
       "A visit counts from this near: observation 5, soil sampling 2, weed spraying 1 (seed 003) "
       "[m]");
     v("dwell_s", dwell_s, config::Range{0.0, 1e5}, "Standing time of a visit [s]");
-    v("value", value, config::Range{1e-3, 1e6},
+    v("value_ratio", value_ratio, config::Range{1e-3, 1e6},
       "Of each row or visit, beside the others', when some have to be dropped");
     v("earliest_s", earliest_s, config::kNonNegative, "Not begun before [s]");
     v("latest_s", latest_s, config::kNonNegative, "Begun by then [s]");
