@@ -110,7 +110,8 @@ class TourBuilder {
     const Charger& charger = model_.mission().farm.chargers[static_cast<std::size_t>(stop.station)];
     DriveCost cost;
     cost.duration_s = stop.end_s - stop.begin_s;
-    soc_ = std::max(soc_, std::min(1.0, stop.end_j / battery().capacity_j()));
+    // As much as the solver puts in: without its margin, the battery is the fuller for it.
+    soc_ = std::min(1.0, soc_ + (stop.end_j - stop.arrival_j) / battery().capacity_j());
     stand(LegKind::kCharge, charger.id, cost, stop.begin_s - stop.arrival_s);
   }
 
