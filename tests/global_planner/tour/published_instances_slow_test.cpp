@@ -73,16 +73,6 @@ TEST(PublishedInstances, SmallEvrptwAreSolvedToTheProof) {
   }
 }
 
-TEST(PublishedInstances, SmallEvrpReachTheBestKnown) {
-  const auto folder = data_folder("evrp");
-  if (!folder) GTEST_SKIP() << "no evrp; set HEADLAND_DATA";
-  for (const auto& [file, best] : {std::pair{"E-n22-k4", 384.678}, {"E-n30-k3", 509.470}}) {
-    const Solved answer = solved(*folder / (std::string(file) + ".evrp"));
-    EXPECT_NEAR(answer.solution.cost, best, 0.001) << file;
-    EXPECT_LE(answer.solution.lower_bound, best + 0.001) << file;
-  }
-}
-
 double score(const Solved& answer) {
   double sum = 0.0;
   for (const TourTask& task : answer.instance.problem.tasks) sum += task.reward;
