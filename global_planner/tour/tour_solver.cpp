@@ -134,7 +134,12 @@ class Search {
       return;
     }
     offer(routes_of(plan));
-    if (exact() && find_exactly()) return;
+    if (exact()) {
+      search.save_vehicles(kRoundsForExact / 4);
+      search.anneal(kRoundsForExact, kLabelsPerRound * kRoundsForExact);
+      offer(routes_of(plan));
+      if (find_exactly()) return;
+    }
     // Ever longer anneals, so that one may end at any time.
     long length = std::min(rounds, std::max(kFirstAnneal, usual_budget() / 8));
     for (long left = rounds; left > 0 && !search.stopped() && !proven(); length *= 2) {
@@ -144,11 +149,9 @@ class Search {
       left -= options_.iterations > 0 ? made : length;
       offer(routes_of(plan));
     }
-    if (exact()) find_exactly();
   }
 
   long budget() const {
-    if (exact()) return kRoundsForExact;
     if (options_.iterations > 0) return options_.iterations;
     return usual_budget();
   }

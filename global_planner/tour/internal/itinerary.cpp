@@ -26,13 +26,20 @@ int cheapest(const Model& model, const VehicleKind& kind, const LabelSet& finish
 // Sets up to the finish, one after each visit; empty if some visit cannot be reached.
 std::vector<LabelSet> label_sets(const Model& model, Crossing& crossing, const VehicleKind& kind,
                                  const std::vector<Visit>& visits) {
+  std::vector<Crossing::Outlook> outlooks(visits.size());
+  Crossing::Outlook next = crossing.at_finish();
+  int to = kind.vehicle.finish;
+  for (std::size_t i = visits.size(); i-- > 0;) {
+    outlooks[i] = next = crossing.before(visits[i], to, next);
+    to = model.mode(visits[i]).entry;
+  }
   std::vector<LabelSet> sets(visits.size() + 2);
   crossing.clear_log();
   crossing.start(sets[0]);
   int site = kind.vehicle.start;
   LabelSet arrived;
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    crossing.cross(sets[i], site, model.mode(visits[i]).entry, {}, arrived);
+    crossing.cross(sets[i], site, model.mode(visits[i]).entry, outlooks[i], arrived);
     crossing.work(arrived, visits[i], sets[i + 1]);
     if (sets[i + 1].empty()) return {};
     site = model.mode(visits[i]).exit;

@@ -73,6 +73,19 @@ void Crossing::start(LabelSet& to) {
   dominance_.add(to, Label{}, {&point, 1});
 }
 
+Crossing::Outlook Crossing::at_finish() const {
+  return {kind_.finish_need_j, kind_.vehicle.latest_s + model_.time_slack()};
+}
+
+Crossing::Outlook Crossing::before(Visit visit, int to, const Outlook& next) const {
+  const TourLeg& work = model_.work(kind_index_, visit);
+  const TourLeg& way = model_.way(kind_index_, model_.mode(visit).exit, to);
+  const double need = need_before(way, next.need_j, kind_.battery);
+  return {need_before(work, need, kind_.battery),
+          std::min(model_.task(visit.task).latest_s + model_.time_slack(),
+                   next.latest_s - way.duration_s - work.duration_s)};
+}
+
 bool Crossing::drive_curve(std::span<const CurvePoint> curve, const TourLeg& leg) {
   ++labels_made_;
   if (!(leg.cost < kNever)) return false;

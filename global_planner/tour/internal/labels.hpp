@@ -72,6 +72,9 @@ class Crossing {
     double need_j = kNever;    ///< with which the finish is reached without stations, if at all
     double latest_s = kNever;  ///< after which it is too late for some visit
   };
+  Outlook at_finish() const;
+  /// On arrival at a visit, from that on arrival at the site after it.
+  Outlook before(Visit visit, int to, const Outlook& next) const;
   /// From labels at the site `a` to labels on arrival at `b`.
   void cross(const LabelSet& from, int a, int b, const Outlook& outlook, LabelSet& to);
   /// Waits for the task's window and works.

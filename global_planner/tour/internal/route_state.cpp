@@ -130,28 +130,15 @@ std::optional<RouteOutcome> RouteEvaluator::propagate(const RouteState& route,
 void RouteEvaluator::look_ahead(const RouteState& route, const RouteEdit& edit) {
   const VehicleKind& kind = model_.kind(route.kind);
   const auto last = static_cast<std::size_t>(edit.last);
-  Crossing::Outlook next{kind.finish_need_j, kind.vehicle.latest_s + model_.time_slack()};
+  Crossing::Outlook next = crossing(route.kind).at_finish();
   if (!route.visits.empty()) next = {route.need_j[last], route.latest_s[last]};
   int to = edit.last < route.size() ? model_.mode(route.visits[last]).entry : kind.vehicle.finish;
   outlooks_.resize(edit.visits.size());
   for (std::size_t i = edit.visits.size(); i-- > 0;) {
-    next = before(route.kind, edit.visits[i], to, next);
+    next = crossing(route.kind).before(edit.visits[i], to, next);
     to = model_.mode(edit.visits[i]).entry;
     outlooks_[i] = next;
   }
-}
-
-// The outlook on arrival at a visit, from that on arrival at the site after it.
-Crossing::Outlook RouteEvaluator::before(int kind, Visit visit, int to,
-                                         const Crossing::Outlook& next) const {
-  const BatteryLimits& battery = model_.kind(kind).battery;
-  const TourLeg& work = model_.work(kind, visit);
-  const TourLeg& way = model_.way(kind, model_.mode(visit).exit, to);
-  if (model_.timeless())
-    return {need_before(work, need_before(way, next.need_j, battery), battery), kNever};
-  return {need_before(work, need_before(way, next.need_j, battery), battery),
-          std::min(model_.task(visit.task).latest_s + model_.time_slack(),
-                   next.latest_s - way.duration_s - work.duration_s)};
 }
 
 // The best label at the finish that is in time.
@@ -237,16 +224,16 @@ void RouteEvaluator::store(RouteState& route, const Base& base) const {
 }
 
 // Outlooks at all visits, from the finish backwards.
-void RouteEvaluator::look_ahead(RouteState& route) const {
+void RouteEvaluator::look_ahead(RouteState& route) {
   const VehicleKind& kind = model_.kind(route.kind);
   const std::size_t n = route.visits.size();
-  Crossing::Outlook next{kind.finish_need_j, kind.vehicle.latest_s + model_.time_slack()};
+  Crossing::Outlook next = crossing(route.kind).at_finish();
   route.need_j.assign(n + 1, next.need_j);
   route.latest_s.assign(n + 1, next.latest_s);
   route.load = 0.0;
   int to = kind.vehicle.finish;
   for (std::size_t i = n; i-- > 0;) {
-    next = before(route.kind, route.visits[i], to, next);
+    next = crossing(route.kind).before(route.visits[i], to, next);
     route.need_j[i] = next.need_j;
     route.latest_s[i] = next.latest_s;
     route.load += model_.task(route.visits[i].task).demand;

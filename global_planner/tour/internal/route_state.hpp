@@ -82,9 +82,8 @@ class RouteEvaluator {
   bool same(const RouteState& route, const RouteState::Cell& cell) const;
   void load(const RouteState& route, const RouteState::Cell& cell);
   void store(RouteState& route, const Base& base) const;
-  void look_ahead(RouteState& route) const;
+  void look_ahead(RouteState& route);
   void look_ahead(const RouteState& route, const RouteEdit& edit);
-  Crossing::Outlook before(int kind, Visit visit, int to, const Crossing::Outlook& next) const;
 
   const Model& model_;
   std::vector<Crossing> crossings_;  // of each kind
