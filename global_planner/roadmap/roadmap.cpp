@@ -76,11 +76,11 @@ std::vector<Path> Roadmap::edge_paths() const {
   return paths;
 }
 
-Result<GoalGraph> Roadmap::connect(const std::vector<Site>& goals) const {
+Result<GoalGraph> Roadmap::connect(const std::vector<Site>& goals,
+                                   const CostWeights& objective) const {
   const internal::GoalLinks links =
       internal::link_goals(goals, impl_->graph, impl_->tracks, impl_->options.margin_m);
-  const internal::WaySearch search(impl_->graph, impl_->tracks, impl_->vehicle,
-                                   impl_->options.objective);
+  const internal::WaySearch search(impl_->graph, impl_->tracks, impl_->vehicle, objective);
   return search.ways(goals, links);
 }
 

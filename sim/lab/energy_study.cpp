@@ -45,22 +45,33 @@ class Pasture {
     area_ = Region({{{{0.0, 0.0}, {corner.x(), 0.0}, corner, {0.0, corner.y()}}, {}}});
     RandomStream random(seed_, "study/energy/goals");
     for (int g = 0; g <= config.goals_count; ++g) {
-      const double x = random.uniform(kBorder, config.side_m - kBorder);
-      const double y = random.uniform(kBorder, config.side_m - kBorder);
-      const Pose2 pose{x, y, random.uniform(-kPi, kPi)};
+      Point2 at;
+      do {
+        at.x() = random.uniform(kBorder, config.side_m - kBorder);
+        at.y() = random.uniform(kBorder, config.side_m - kBorder);
+      } while (!gentle(at));
+      const Pose2 pose{at.x(), at.y(), random.uniform(-kPi, kPi)};
       goals_.push_back({pose, pose, fmt::format("goal {}", g)});
     }
   }
 
-  // The best tour for an objective, priced in full.
-  Result<PricedTour> tour(Objective objective) const {
+  Result<Pair> tours() const {
     RoadmapOptions options;
     options.samples = config_.samples_count;
     options.seed = seed_;
-    options.objective = objective;
     const auto roadmap = Roadmap::build(area_, ground_, config_.vehicle, options);
     if (!roadmap) return tl::unexpected<Error>(roadmap.error());
-    const auto graph = roadmap->connect(goals_);
+    const auto least = tour(*roadmap, Objective::kEnergy);
+    if (!least) return tl::unexpected<Error>(least.error());
+    const auto shortest = tour(*roadmap, Objective::kLength);
+    if (!shortest) return tl::unexpected<Error>(shortest.error());
+    return Pair{*least, *shortest};
+  }
+
+ private:
+  // The best tour for an objective, priced in full.
+  Result<PricedTour> tour(const Roadmap& roadmap, Objective objective) const {
+    const auto graph = roadmap.connect(goals_, objective);
     if (!graph) return tl::unexpected<Error>(graph.error());
     const auto solution = solve_tour(tour_problem(*graph, objective));
     if (!solution) return tl::unexpected<Error>(solution.error());
@@ -74,7 +85,6 @@ class Pasture {
     return tour;
   }
 
- private:
   TourProblem tour_problem(const GoalGraph& graph, Objective objective) const {
     TourProblem problem;
     problem.sites = graph.goals();
@@ -104,6 +114,14 @@ class Pasture {
       tour.climb_m += std::max(0.0, now - before);
       before = now;
     }
+  }
+
+  // Goals lie where a vehicle can stand in any heading, with room for ways up to them.
+  bool gentle(const Point2& at) const {
+    const auto sample = ground_.sample(at);
+    const double most =
+        0.5 * deg_to_rad(std::min(config_.vehicle.max_pitch_deg, config_.vehicle.max_roll_deg));
+    return sample && std::atan(sample->gradient.norm()) < most;
   }
 
   double height(const Point2& at) const {
@@ -168,11 +186,12 @@ Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) 
   parallel_for(config.runs_count, jobs, [&](int run) {
     const auto i = static_cast<std::size_t>(run);
     const Pasture pasture(config, run);
-    const auto least = pasture.tour(Objective::kEnergy);
-    const auto shortest = pasture.tour(Objective::kLength);
-    if (!least) errors[i] = least.error();
-    if (!shortest) errors[i] = shortest.error();
-    if (least && shortest) pairs[i] = {*least, *shortest};
+    const auto tours = pasture.tours();
+    if (tours) {
+      pairs[i] = *tours;
+    } else {
+      errors[i] = tours.error();
+    }
   });
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (!errors[i]) continue;

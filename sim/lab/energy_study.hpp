@@ -20,8 +20,8 @@ struct EnergyStudyConfig {
   int runs_count = 20;          ///< terrains
   double side_m = 400.0;        ///< of the square pasture
   int goals_count = 10;         ///< and a charger, where the tour begins and ends
-  double relief_m = 40.0;       ///< highest less lowest point
-  double wavelength_m = 160.0;  ///< of the largest hills
+  double relief_m = 30.0;       ///< highest less lowest point
+  double wavelength_m = 200.0;  ///< of the largest hills
   double cell_m = 2.0;          ///< of the terrain
   int samples_count = 1500;     ///< poses of the roadmap
   Vehicle vehicle;

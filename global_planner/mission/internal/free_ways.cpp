@@ -47,13 +47,12 @@ class FreeWays {
     options.samples = planner.roadmap_samples;
     options.seed = planner.seed;
     options.margin_m = margin_;
-    options.objective = mission_.config.cost_weights();
     options.cache = planner.cache;
     const auto roadmap = Roadmap::build(area_, mission_.ground, vehicle_, options);
     if (!roadmap) return {};  // no room for one: the lanes have to do
     std::vector<Site> sites;
     for (const Goal& goal : goals_) sites.push_back(goal.outside);
-    const auto graph = roadmap->connect(sites);
+    const auto graph = roadmap->connect(sites, mission_.config.cost_weights());
     if (!graph) return tl::unexpected<Error>(graph.error());
     for (std::size_t a = 0; a < goals_.size(); ++a) {
       for (std::size_t b = 0; b < goals_.size(); ++b) {

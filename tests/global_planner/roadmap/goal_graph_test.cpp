@@ -16,10 +16,11 @@ using namespace test;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 GoalGraph ways_between(const Field& field, const Vehicle& vehicle, const std::vector<Site>& goals,
-                       const RoadmapOptions& options) {
+                       const RoadmapOptions& options,
+                       const CostWeights& objective = Objective::kEnergy) {
   return Roadmap::build(field.region, field.ground, vehicle, options)
       .value()
-      .connect(goals)
+      .connect(goals, objective)
       .value();
 }
 
@@ -107,8 +108,7 @@ struct OverTheHill : ::testing::Test {
   GoalGraph::Edge way(const Vehicle& vehicle, Objective objective) const {
     RoadmapOptions options;
     options.samples = 250;
-    options.objective = objective;
-    return ways_between(field, vehicle, goals, options).edge(0, 1);
+    return ways_between(field, vehicle, goals, options, objective).edge(0, 1);
   }
   double highest(const Path& path) const {
     double most = 0.0;

@@ -220,8 +220,6 @@ TEST_F(RoadmapCacheFile, IsAnotherForAnotherVehicleSeedCurveMarginAreaOrGround) 
   field_.region = Region({box(0.0, 0.0, 100.0, 100.0)});
   EXPECT_FALSE(build(20).from_cache());
   EXPECT_EQ(files().size(), 7U);
-  options_.objective = Objective::kTime;
-  EXPECT_TRUE(build(20).from_cache()) << "all objectives share a roadmap";
 }
 
 TEST_F(RoadmapCacheFile, ThatCannotBeWrittenIsNone) {
