@@ -63,14 +63,15 @@ ProgressBar::~ProgressBar() {
   if (terminal_ && shown_percent_ >= 0) fmt::print(stderr, "\r\033[K");
 }
 
-void ProgressBar::update(double fraction) {
+void ProgressBar::update(double fraction, const std::string& note) {
   const int percent = static_cast<int>(100.0 * fraction);
-  if (!terminal_ || percent == shown_percent_) return;
+  if (!terminal_ || (percent == shown_percent_ && note == shown_note_)) return;
   shown_percent_ = percent;
+  shown_note_ = note;
   constexpr int kWidth = 32;
   const int filled = kWidth * percent / 100;
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3d} %", label_, "", filled, "", kWidth - filled,
-             percent);
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3d} % {}\033[K", label_, "", filled, "",
+             kWidth - filled, percent, note);
   std::fflush(stderr);
 }
 

@@ -25,6 +25,13 @@ int run_command(const CommonOptions& options, double realtime);
 int study_command(const CommonOptions& options, int jobs, int max_episodes);
 int doctor_command(const CommonOptions& options);
 
+struct RouteOptions {
+  double time_limit_s = 60.0;
+  std::uint64_t seed = 1;
+  long iterations = 0;  ///< rounds of one search; 0: searches until the time or ideas run out
+};
+int route_command(const CommonOptions& common, const RouteOptions& options);
+
 /// Prints the error as one line on stderr (and as JSON on stdout with --json); returns its exit
 /// code.
 int report_error(const Error& error, const CommonOptions& options);
@@ -48,12 +55,14 @@ class ProgressBar {
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  void update(double fraction);
+  /// `note`: a few words behind the bar.
+  void update(double fraction, const std::string& note = {});
 
  private:
   std::string label_;
   bool terminal_;
   int shown_percent_ = -1;
+  std::string shown_note_;
 };
 
 /// `text` in bold or a colour, where stderr is a terminal and NO_COLOR is not set.

@@ -29,6 +29,7 @@ int run(int argc, char** argv) {
       "  headland plan config/missions/girona_orchard.yaml --out out/plan\n"
       "  headland run config/missions/girona_orchard.yaml --set simulation.seed=7\n"
       "  headland study config/studies/ebs221.yaml\n"
+      "  headland route kro124p.atsp --time-limit-s 20\n"
       "Exit codes: 0 done, 2 the input is wrong, 3 no feasible answer, 4 internal error");
   CommonOptions options;
   int code = 0;
@@ -58,6 +59,31 @@ int run(int argc, char** argv) {
   study->add_option("--max-episodes", max_episodes, "At most this many episodes per cell; 0: all")
       ->check(CLI::NonNegativeNumber);
   study->callback([&] { code = headland::apps::study_command(options, jobs, max_episodes); });
+
+  auto* route = app.add_subcommand(
+      "route", "Solve a routing instance: TSPLIB TSP and ATSP, EVRP (CEC-12), E-VRPTW, OP");
+  headland::apps::RouteOptions route_options;
+  std::string route_out;
+  route->add_option("FILE", options.file, "Instance; its format is recognised by its content")
+      ->required();
+  route->add_option("--time-limit-s", route_options.time_limit_s, "Search at most this long")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  route->add_option("--seed", route_options.seed, "Seed of the search")->capture_default_str();
+  route
+      ->add_option("--iterations", route_options.iterations,
+                   "Rounds of a single search; 0: searches until the time is up or three in a "
+                   "row find nothing better")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  route->add_option("--out", route_out,
+                    "Directory for solution.json and solution.sol; none: no "
+                    "files");
+  route->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
+  route->callback([&] {
+    options.out = route_out;
+    code = headland::apps::route_command(options, route_options);
+  });
 
   auto* doctor = app.add_subcommand("doctor", "Check the installation");
   doctor->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");

@@ -10,9 +10,9 @@ namespace headland::apps {
 namespace {
 
 // What any command may write; those of an earlier command in the same directory would mislead.
-constexpr std::array<std::string_view, 9> kOutputs = {
-    "summary.json", "plan.geojson", "metrics.json", "trace.csv",  "run.mcap",
-    "results.json", "episodes.csv", "report.json",  "report.html"};
+constexpr std::array<std::string_view, 11> kOutputs = {
+    "summary.json", "plan.geojson", "metrics.json", "trace.csv",     "run.mcap",    "results.json",
+    "episodes.csv", "report.json",  "report.html",  "solution.json", "solution.sol"};
 
 tl::unexpected<Error> cannot_write(const std::filesystem::path& path, const std::string& why) {
   return fail(ErrorCode::kFileNotWritable, "cannot be written: " + why,

@@ -20,10 +20,19 @@ double rounded(double value, int decimals) {
 }
 
 Json leg_json(const PlanLeg& leg) {
-  return {
-      {"kind", config::enum_name(leg.kind)},           {"id", leg.id},
-      {"length_m", rounded(leg.cost.length_m, 3)},     {"energy_j", rounded(leg.cost.energy_j, 1)},
-      {"duration_s", rounded(leg.cost.duration_s, 2)}, {"soc_end", rounded(leg.soc_end, 5)}};
+  Json json = {{"kind", config::enum_name(leg.kind)},
+               {"id", leg.id},
+               {"length_m", rounded(leg.cost.length_m, 3)},
+               {"energy_j", rounded(leg.cost.energy_j, 1)},
+               {"duration_s", rounded(leg.cost.duration_s, 2)},
+               {"soc_end", rounded(leg.soc_end, 5)},
+               {"begin_s", rounded(leg.begin_s, 2)}};
+  if (leg.wait_s > 0.0) json["wait_s"] = rounded(leg.wait_s, 2);
+  if (leg.from_m != leg.to_m) {
+    json["from_m"] = rounded(leg.from_m, 2);
+    json["to_m"] = rounded(leg.to_m, 2);
+  }
+  return json;
 }
 
 double total_energy(const MissionPlan& plan) {
@@ -69,6 +78,7 @@ std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp
                      {"energy_j", rounded(total_energy(plan), 1)},
                      {"makespan_s", rounded(plan.makespan_s, 2)},
                      {"charge_stops", plan.charge_stops}}},
+                   {"min_margin_j", rounded(plan.min_margin_j, 1)},
                    {"objective_value", plan.value},
                    {"lower_bound", plan.lower_bound},
                    {"gap_ratio", plan.gap_ratio()},
@@ -80,7 +90,22 @@ std::string summary_json(const MissionPlan& plan, double planning_s, const Stamp
     document["vehicles"].push_back({{"id", vehicle.id},
                                     {"energy_j", rounded(vehicle.energy_j, 1)},
                                     {"min_soc", rounded(vehicle.min_soc, 5)},
+                                    {"min_margin_j", rounded(vehicle.min_margin_j, 1)},
+                                    {"finish_s", rounded(vehicle.finish_s, 2)},
                                     {"legs", std::move(legs)}});
+  }
+  document["dropped"] = Json::array();
+  for (const DroppedWork& work : plan.dropped) {
+    document["dropped"].push_back({{"id", work.id}, {"reason", work.reason}});
+  }
+  document["why"] = Json::array();
+  for (const PlanReason& reason : plan.reasons) {
+    Json why = {{"text", reason.text}};
+    if (reason.vehicle >= 0) {
+      why["vehicle"] = plan.vehicles[static_cast<std::size_t>(reason.vehicle)].id;
+      why["leg"] = reason.leg;
+    }
+    document["why"].push_back(std::move(why));
   }
   document["headland"] = stamp_json(stamp);
   return document.dump(2) + "\n";
@@ -90,15 +115,18 @@ std::string plan_geojson(const MissionPlan& plan, const Farm& farm, const Stamp&
   Json features = Json::array();
   for (const VehiclePlan& vehicle : plan.vehicles) {
     int stage = 0;
+    Point2 place = vehicle.start.position();
     for (int i = 0; i < static_cast<int>(vehicle.legs.size()); ++i) {
       const PlanLeg& leg = vehicle.legs[static_cast<std::size_t>(i)];
       Json properties = leg_json(leg);
       properties["vehicle"] = vehicle.id;
       properties["leg"] = i;
-      const Path& path = vehicle.stages[static_cast<std::size_t>(stage)].path;
+      const PlanStage& driven = vehicle.stages[static_cast<std::size_t>(stage)];
+      const Path& path = driven.path;
+      if (!path.empty()) place = path.end_pose().position();
       Json geometry;
-      if (leg.kind == LegKind::kCharge) {
-        const LatLon p = farm.frame.to_wgs84(path.end_pose().position());
+      if (driven.stop_leg == i) {
+        const LatLon p = farm.frame.to_wgs84(place);
         geometry = {{"type", "Point"},
                     {"coordinates", {rounded(p.lon_deg, 8), rounded(p.lat_deg, 8)}}};
         ++stage;
@@ -122,20 +150,33 @@ std::string duration_text(double seconds) {
 
 std::string plan_text(const MissionPlan& plan, double planning_s) {
   int rows = 0;
+  int visits = 0;
+  int vehicles = 0;
+  double min_soc = 1.0;
   for (const VehiclePlan& vehicle : plan.vehicles) {
-    for (const PlanLeg& leg : vehicle.legs) rows += leg.kind == LegKind::kRow ? 1 : 0;
+    vehicles += vehicle.legs.empty() ? 0 : 1;
+    min_soc = std::min(min_soc, vehicle.min_soc);
+    for (const PlanLeg& leg : vehicle.legs) {
+      rows += leg.kind == LegKind::kRow ? 1 : 0;
+      visits += leg.kind == LegKind::kTask ? 1 : 0;
+    }
   }
-  return fmt::format(
+  std::string text = fmt::format(
       "plan       {} ({}), found in {:.2f} s\n"
-      "rows       {} rows, {:.0f} m of work\n"
+      "work       {} rows, {:.0f} m{} by {} of {} vehicles\n"
       "driving    {:.0f} m in turns, {:.0f} m in transit\n"
       "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.1f} %\n"
+      "margin     {:.2f} kWh above the reserve on reaching a charger from anywhere\n"
       "duration   {}\n",
-      config::enum_name(plan.status()), gap_text(plan), planning_s, rows, plan.work_m, plan.turn_m,
-      plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
-      plan.charge_stops == 1 ? "" : "s",
-      100.0 * (plan.vehicles.empty() ? 1.0 : plan.vehicles.front().min_soc),
+      config::enum_name(plan.status()), gap_text(plan), planning_s, rows, plan.work_m,
+      visits > 0 ? fmt::format(", {} visits", visits) : "", vehicles, plan.vehicles.size(),
+      plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
+      plan.charge_stops == 1 ? "" : "s", 100.0 * min_soc, plan.min_margin_j / 3.6e6,
       duration_text(plan.makespan_s));
+  for (const DroppedWork& work : plan.dropped) {
+    text += fmt::format("left out   {}: {}\n", work.id, work.reason);
+  }
+  return text;
 }
 
 }  // namespace headland::apps

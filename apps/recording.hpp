@@ -2,14 +2,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/world/farm.hpp"
 #include "sim/lab/closed_loop.hpp"
 
 namespace headland::apps {
 
-/// run.mcap: the drive every `period` [s] as Foxglove's PoseInFrame and LocationFix, the planned
-/// path as PosesInFrame, and the tracking state as JSON.
-std::string run_mcap(const Run& run, const VehiclePlan& plan, const Farm& farm, double period);
+/// run.mcap: the drives every `period` [s] as Foxglove's PoseInFrame and LocationFix, the planned
+/// paths as PosesInFrame, and the tracking states as JSON; topics begin with the vehicle's id.
+std::string run_mcap(const FleetRun& run, const std::vector<VehiclePlan>& plans, const Farm& farm,
+                     double period);
 
 }  // namespace headland::apps

@@ -12,6 +12,7 @@
 
 #include "apps/output_files.hpp"
 #include "apps/report_page.hpp"
+#include "apps/report_terrain.hpp"
 
 namespace headland {
 namespace {
@@ -73,6 +74,7 @@ Json to_json(const ReportFeature& feature) {
       for (const Polyline& ring : feature.rings) json["coordinates"].push_back(to_json(ring));
       break;
   }
+  if (feature.vehicle) json["vehicle"] = *feature.vehicle;
   if (feature.leg) json["leg"] = *feature.leg;
   if (!feature.leg_kind.empty()) json["leg_kind"] = feature.leg_kind;
   return json;
@@ -93,7 +95,7 @@ Json picked(const std::vector<T>& column, const std::vector<int>& indices, doubl
   return values;
 }
 
-std::optional<Error> check(const ReportSeries& series) {
+std::optional<Error> uneven(const ReportSeries& series) {
   const std::size_t size = series.s_m.size();
   for (const std::size_t other :
        {series.x_m.size(), series.y_m.size(), series.error_m.size(), series.steering_deg.size(),
@@ -107,9 +109,25 @@ std::optional<Error> check(const ReportSeries& series) {
   return std::nullopt;
 }
 
-Json to_json(const ReportSeries& series) {
+std::optional<Error> check(const Report& report) {
+  for (const ReportVehicle& vehicle : report.vehicles) {
+    if (auto error = uneven(vehicle.series)) return error;
+  }
+  if (!report.terrain) return std::nullopt;
+  const ReportTerrain& terrain = *report.terrain;
+  if (static_cast<std::size_t>(terrain.columns) * static_cast<std::size_t>(terrain.rows) ==
+      terrain.heights_m.size()) {
+    return std::nullopt;
+  }
+  return Error{ErrorCode::kInternal,
+               fmt::format("a report's terrain has {} heights, its grid {} x {}",
+                           terrain.heights_m.size(), terrain.columns, terrain.rows),
+               {}};
+}
+
+Json to_json(const ReportSeries& series, int most) {
   const std::vector<int> indices =
-      thin_out(static_cast<int>(series.s_m.size()), series.error_m, kMaxReportPoints);
+      thin_out(static_cast<int>(series.s_m.size()), series.error_m, most);
   return {{"s_m", picked(series.s_m, indices, kMillimetres)},
           {"x_m", picked(series.x_m, indices, kMillimetres)},
           {"y_m", picked(series.y_m, indices, kMillimetres)},
@@ -118,6 +136,31 @@ Json to_json(const ReportSeries& series) {
           {"soc", picked(series.soc, indices, kSocSteps)},
           {"speed_mps", picked(series.speed_mps, indices, 1e3)},
           {"leg", picked(series.leg, indices, 1.0)}};
+}
+
+Json to_json(const ReportStop& stop) {
+  return {{"s_m", rounded(stop.s_m, kMillimetres)},
+          {"soc_from", rounded(stop.soc_from, kSocSteps)},
+          {"soc_to", rounded(stop.soc_to, kSocSteps)},
+          {"name", stop.name}};
+}
+
+Json to_json(const ReportReason& reason) {
+  Json json = {{"text", reason.text}};
+  if (reason.vehicle >= 0) json["vehicle"] = reason.vehicle;
+  if (reason.leg >= 0) json["leg"] = reason.leg;
+  return json;
+}
+
+Json to_json(const ReportTerrain& terrain) {
+  const PackedHeights packed = pack(terrain.heights_m);
+  return {{"south_west_m", to_json(terrain.south_west)},
+          {"cell_m", six_digits(terrain.cell_m)},
+          {"columns", terrain.columns},
+          {"rows", terrain.rows},
+          {"low_m", rounded(packed.low_m, kMillimetres)},
+          {"high_m", rounded(packed.high_m, kMillimetres)},
+          {"heights", packed.base64}};
 }
 
 Json to_json(const ReportTable& table) {
@@ -167,6 +210,24 @@ template <class T>
 Json all_of(const std::vector<T>& items) {
   Json array = Json::array();
   for (const T& item : items) array.push_back(to_json(item));
+  return array;
+}
+
+Json to_json(const ReportVehicle& vehicle, int most_points) {
+  Json json = {{"name", vehicle.name},
+               {"series", to_json(vehicle.series, most_points)},
+               {"stops", all_of(vehicle.stops)}};
+  if (vehicle.reserve_soc) json["reserve_soc"] = rounded(*vehicle.reserve_soc, kSocSteps);
+  return json;
+}
+
+Json vehicles_json(const std::vector<ReportVehicle>& vehicles) {
+  constexpr int kLeastPoints = 1000;
+  const int share = kMaxReportPoints / std::max(1, static_cast<int>(vehicles.size()));
+  Json array = Json::array();
+  for (const ReportVehicle& vehicle : vehicles) {
+    array.push_back(to_json(vehicle, std::max(share, kLeastPoints)));
+  }
   return array;
 }
 
@@ -240,7 +301,7 @@ std::vector<int> thin_out(int size, const std::vector<double>& values, int count
 }
 
 Result<std::string> report_json(const Report& report) {
-  if (auto error = check(report.series)) return tl::unexpected<Error>(std::move(*error));
+  if (auto error = check(report)) return tl::unexpected<Error>(std::move(*error));
   Json json = {{"title", report.title},
                {"kind", name_of(report.kind)},
                {"status", report.status},
@@ -250,10 +311,11 @@ Result<std::string> report_json(const Report& report) {
                {"config_yaml", report.config_yaml},
                {"tiles", all_of(report.tiles)},
                {"map", {{"features", all_of(report.features)}}},
-               {"series", to_json(report.series)},
+               {"vehicles", vehicles_json(report.vehicles)},
+               {"why", all_of(report.why)},
                {"tables", all_of(report.tables)},
                {"plots", all_of(report.plots)}};
-  if (report.reserve_soc) json["reserve_soc"] = rounded(*report.reserve_soc, kSocSteps);
+  if (report.terrain) json["terrain"] = to_json(*report.terrain);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

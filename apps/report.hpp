@@ -35,8 +35,9 @@ struct ReportFeature {
   /// Point and line: exactly one list of points. Polygon: the outer ring, then the holes.
   std::vector<Polyline> rings;  ///< [m, map]
   enum class Shape { kPoint, kLine, kPolygon } shape = Shape::kLine;
-  std::optional<int> leg{};  ///< of the plan; legs are the numbers of Path
-  std::string leg_kind{};    ///< row, turn, transit or charge
+  std::optional<int> vehicle{};  ///< whose plan: an index of Report::vehicles
+  std::optional<int> leg{};      ///< of the plan; legs are the numbers of Path
+  std::string leg_kind{};        ///< row, turn, transit, task or charge
 
   static ReportFeature point(std::string kind, std::string name, const Point2& position);
   static ReportFeature line(std::string kind, std::string name, Polyline line);
@@ -56,13 +57,45 @@ struct ReportSeries {
   std::vector<int> leg;
 };
 
+/// A charge on the way.
+struct ReportStop {
+  double s_m = 0.0;       ///< driven distance [m]
+  double soc_from = 0.0;  ///< on arrival
+  double soc_to = 0.0;    ///< on leaving
+  std::string name;       ///< of the charger
+};
+
+struct ReportVehicle {
+  std::string name;
+  std::optional<double> reserve_soc{};
+  ReportSeries series{};
+  std::vector<ReportStop> stops{};
+};
+
+/// Heights under the map, on a grid of points.
+struct ReportTerrain {
+  Point2 south_west{0.0, 0.0};  ///< the first grid point [m, map]
+  double cell_m = 1.0;          ///< between grid points
+  int columns = 0;
+  int rows = 0;
+  std::vector<double> heights_m;  ///< row by row from the south-west; NaN: none [m]
+};
+
+/// Why a leg is there, or a task is not.
+struct ReportReason {
+  int vehicle = -1;  ///< in Report::vehicles; -1: of none
+  int leg = -1;      ///< -1: of none
+  std::string text;
+};
+
 struct ReportTable {
   struct Column {
     std::string name;
     std::string unit{};
   };
   std::string title;
-  /// A column named "leg" makes its numbers links to that leg on the map.
+  /// A column named "leg" makes its numbers links to that leg on the map: of the vehicle that a
+  /// column named "vehicle" names, or of the first.
   std::vector<Column> columns;
   std::vector<std::vector<ReportValue>> rows;
 };
@@ -94,13 +127,14 @@ struct Report {
   std::string config_yaml;
   std::vector<ReportTile> tiles;
   std::vector<ReportFeature> features;
-  ReportSeries series;
-  std::optional<double> reserve_soc;
+  std::vector<ReportVehicle> vehicles;
+  std::optional<ReportTerrain> terrain;
+  std::vector<ReportReason> why;
   std::vector<ReportTable> tables;
   std::vector<ReportPlot> plots;
 };
 
-/// Series longer than this are thinned out before they are written.
+/// Series longer than this, over all vehicles together, are thinned out before they are written.
 inline constexpr int kMaxReportPoints = 20000;
 
 /// Indices of at most `count` samples that keep the shape of a series: the first and last, and of
@@ -109,7 +143,7 @@ inline constexpr int kMaxReportPoints = 20000;
 std::vector<int> thin_out(int size, const std::vector<double>& values, int count);
 
 /// The report as JSON text: lengths to the millimetre, free numbers to six digits.
-/// Error kInternal if the columns of the series differ in length.
+/// Error kInternal if the columns of a series, or the heights and their grid, differ in length.
 Result<std::string> report_json(const Report& report);
 
 /// The page around a JSON text: one file that needs no network.

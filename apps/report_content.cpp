@@ -8,12 +8,14 @@
 #include <fmt/format.h>
 
 #include "apps/plan_output.hpp"
+#include "apps/report_terrain.hpp"
 
 namespace headland::apps {
 namespace {
 
 constexpr double kPlanSpacing = 0.25;   // of the drawn plan's points [m]
 constexpr double kSeriesSpacing = 1.0;  // of a plan's series [m]
+constexpr double kTerrainRim = 0.2;    // of the map's longer side, around it
 constexpr int kMostCells = 400;         // of a study's table
 
 void add_areas(const std::vector<Polygon>& areas, const char* kind, Report& report) {
@@ -64,25 +66,29 @@ Polyline leg_line(const Path& path, int leg) {
   return line;
 }
 
-void add_planned_path(const VehiclePlan& vehicle, Report& report) {
+void add_planned_path(const VehiclePlan& plan, int vehicle, Report& report) {
   std::size_t stage = 0;
-  for (int i = 0; i < static_cast<int>(vehicle.legs.size()); ++i) {
-    const PlanLeg& leg = vehicle.legs[static_cast<std::size_t>(i)];
-    if (leg.kind == LegKind::kCharge) {
+  for (int i = 0; i < static_cast<int>(plan.legs.size()); ++i) {
+    const PlanStage& driven = plan.stages[stage];
+    if (driven.stop_leg == i) {
       ++stage;
       continue;
     }
-    ReportFeature feature =
-        ReportFeature::line("plan", leg.id, leg_line(vehicle.stages[stage].path, i));
+    const PlanLeg& leg = plan.legs[static_cast<std::size_t>(i)];
+    ReportFeature feature = ReportFeature::line("plan", leg.id, leg_line(driven.path, i));
+    feature.vehicle = vehicle;
     feature.leg = i;
     feature.leg_kind = config::enum_name(leg.kind);
     report.features.push_back(std::move(feature));
   }
 }
 
-ReportTable leg_table(const VehiclePlan& vehicle) {
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+ReportTable leg_table(const std::vector<VehiclePlan>& plans) {
   ReportTable table{"Legs",
-                    {{"leg"},
+                    {{"vehicle"},
+                     {"leg"},
                      {"kind"},
                      {"name"},
                      {"length", "m"},
@@ -90,42 +96,69 @@ ReportTable leg_table(const VehiclePlan& vehicle) {
                      {"energy", "Wh"},
                      {"charge at end", "%"}},
                     {}};
-  for (std::size_t i = 0; i < vehicle.legs.size(); ++i) {
-    const PlanLeg& leg = vehicle.legs[i];
-    table.rows.push_back({static_cast<double>(i), std::string(config::enum_name(leg.kind)), leg.id,
-                          std::round(10.0 * leg.cost.length_m) / 10.0,
-                          std::round(leg.cost.duration_s),
-                          std::round(10.0 * leg.cost.energy_j / 3600.0) / 10.0,
-                          std::round(1000.0 * leg.soc_end) / 10.0});
+  for (const VehiclePlan& plan : plans) {
+    for (std::size_t i = 0; i < plan.legs.size(); ++i) {
+      const PlanLeg& leg = plan.legs[i];
+      table.rows.push_back(
+          {plan.id, static_cast<double>(i), std::string(config::enum_name(leg.kind)), leg.id,
+           rounded(leg.cost.length_m, 0.1), rounded(leg.cost.duration_s, 1.0),
+           rounded(leg.cost.energy_j / 3600.0, 0.1), rounded(100.0 * leg.soc_end, 0.1)});
+    }
   }
+  if (plans.size() > 1) return table;
+  table.columns.erase(table.columns.begin());
+  for (auto& row : table.rows) row.erase(row.begin());
   return table;
 }
 
+double soc_before(const VehiclePlan& plan, int leg) {
+  return leg <= 0 ? plan.start_soc : plan.legs[static_cast<std::size_t>(leg - 1)].soc_end;
+}
+
 // Planned speed and state of charge along the path, for a plan that nobody has driven yet.
-ReportSeries planned_series(const VehiclePlan& vehicle) {
+ReportSeries planned_series(const VehiclePlan& plan) {
   ReportSeries series;
   double offset = 0.0;
-  double soc = vehicle.start_soc;
-  int last_leg = -1;
-  for (const PlanStage& stage : vehicle.stages) {
+  for (const PlanStage& stage : plan.stages) {
+    if (stage.path.empty()) continue;
     for (const PathSample& sample : stage.path.sample(kSeriesSpacing)) {
-      const auto leg = static_cast<std::size_t>(sample.leg);
-      if (sample.leg != last_leg) {
-        soc = leg == 0 ? vehicle.start_soc : vehicle.legs[leg - 1].soc_end;
-        last_leg = sample.leg;
-      }
+      const PlanLeg& leg = plan.legs[static_cast<std::size_t>(sample.leg)];
+      const double soc = soc_before(plan, sample.leg);
       const auto [begin, end] = stage.path.leg_range(sample.leg);
       const double part = end > begin ? (sample.s - begin) / (end - begin) : 1.0;
       series.s_m.push_back(offset + sample.s);
       series.x_m.push_back(sample.pose.x);
       series.y_m.push_back(sample.pose.y);
-      series.soc.push_back(soc + part * (vehicle.legs[leg].soc_end - soc));
-      series.speed_mps.push_back(leg_speed(vehicle.vehicle, vehicle.legs[leg].kind));
+      series.soc.push_back(soc + part * (leg.soc_end - soc));
+      series.speed_mps.push_back(leg_speed(plan.vehicle, leg.kind));
       series.leg.push_back(sample.leg);
     }
     offset += stage.path.length();
   }
   return series;
+}
+
+// The charges of a plan; `run`, if there is one, says which came about and how.
+std::vector<ReportStop> charge_stops(const VehiclePlan& plan, const Run* run) {
+  std::vector<ReportStop> stops;
+  double s = 0.0;
+  for (const PlanStage& stage : plan.stages) {
+    s += stage.path.length();
+    if (stage.stop_leg < 0) continue;
+    const auto at = static_cast<std::size_t>(stage.stop_leg);
+    const PlanLeg& leg = plan.legs[at];
+    if (leg.kind != LegKind::kCharge || (run != nullptr && !run->leg_done[at])) continue;
+    ReportStop stop{s, soc_before(plan, stage.stop_leg), leg.soc_end, leg.id};
+    if (run != nullptr) {
+      const auto after =
+          std::find_if(run->trace.begin(), run->trace.end(),
+                       [&stage](const TraceRow& row) { return row.leg > stage.stop_leg; });
+      if (after != run->trace.end()) stop.soc_to = after->soc;
+      if (after != run->trace.begin()) stop.soc_from = std::prev(after)->soc;
+    }
+    stops.push_back(std::move(stop));
+  }
+  return stops;
 }
 
 ReportSeries driven_series(const Run& run) {
@@ -154,21 +187,49 @@ ReportSeries driven_series(const Run& run) {
 
 ReportTile tile(const std::string& label, double value, double unit, const std::string& unit_name,
                 const std::string& hint = {}) {
-  return {label, std::round(value / unit) * unit, unit_name, hint};
+  return {label, rounded(value, unit), unit_name, hint};
 }
 
 void add_plan_tiles(const PlannedMission& planned, Report& report) {
   const MissionPlan& plan = planned.plan;
-  const VehiclePlan& vehicle = plan.vehicles.front();
+  double energy_j = 0.0;
+  for (const VehiclePlan& vehicle : plan.vehicles) energy_j += vehicle.energy_j;
   report.tiles.push_back(tile("Rows' length", plan.work_m / 1000.0, 0.01, "km"));
   report.tiles.push_back(tile("Turns", plan.turn_m, 1.0, "m"));
   report.tiles.push_back(tile("Transit", plan.transit_m, 1.0, "m"));
-  report.tiles.push_back(tile("Planned energy", vehicle.energy_j / 3.6e6, 0.01, "kWh"));
+  report.tiles.push_back(tile("Planned energy", energy_j / 3.6e6, 0.01, "kWh"));
   report.tiles.push_back({"Planned duration", duration_text(plan.makespan_s), "", ""});
   report.tiles.push_back(tile("Charge stops", plan.charge_stops, 1.0, ""));
+  report.tiles.push_back(tile("Least margin", plan.min_margin_j / 3.6e6, 0.01, "kWh",
+                              "left above the reserve at a charger, from anywhere"));
+  if (!plan.dropped.empty()) {
+    report.tiles.push_back(
+        tile("Left out", static_cast<double>(plan.dropped.size()), 1.0, "tasks", "see why below"));
+  }
   report.tiles.push_back(tile("Gap", 100.0 * plan.gap_ratio(), 0.01, "%",
                               "how far the plan is from a bound that no plan can beat"));
   report.tiles.push_back(tile("Planning", planned.planning_s, 0.01, "s"));
+}
+
+std::vector<ReportReason> why(const MissionPlan& plan) {
+  std::vector<ReportReason> reasons;
+  for (const PlanReason& reason : plan.reasons) {
+    reasons.push_back({reason.vehicle, reason.leg, reason.text});
+  }
+  return reasons;
+}
+
+// Around all that the map shows, and a little more.
+MapBox map_extent(const std::vector<ReportFeature>& features) {
+  MapBox box;
+  for (const ReportFeature& feature : features) {
+    for (const Polyline& ring : feature.rings) {
+      for (const Point2& p : ring) box.extend(p);
+    }
+  }
+  if (box.isEmpty()) return box;
+  const double rim = kTerrainRim * box.sizes().maxCoeff();
+  return {box.min() - Point2(rim, rim), box.max() + Point2(rim, rim)};
 }
 
 Report base_report(const PlannedMission& planned, ReportKind kind,
@@ -181,11 +242,18 @@ Report base_report(const PlannedMission& planned, ReportKind kind,
   report.seed = planned.stamp.seed;
   report.config_hash = planned.stamp.config_hash;
   report.config_yaml = planned.stamp.config_yaml;
-  const VehiclePlan& vehicle = planned.plan.vehicles.front();
-  report.reserve_soc = vehicle.vehicle.battery.reserve_soc;
+  const MissionPlan& plan = planned.plan;
   add_farm(planned.mission.farm, rows_done, report);
-  add_planned_path(vehicle, report);
-  report.tables.push_back(leg_table(vehicle));
+  for (std::size_t v = 0; v < plan.vehicles.size(); ++v) {
+    const VehiclePlan& vehicle = plan.vehicles[v];
+    report.vehicles.push_back({vehicle.id, vehicle.vehicle.battery.reserve_soc, {}, {}});
+    add_planned_path(vehicle, static_cast<int>(v), report);
+  }
+  if (!planned.mission.ground.flat()) {
+    report.terrain = terrain_raster(planned.mission.ground, map_extent(report.features));
+  }
+  report.why = why(plan);
+  report.tables.push_back(leg_table(plan.vehicles));
   return report;
 }
 
@@ -193,17 +261,27 @@ Report base_report(const PlannedMission& planned, ReportKind kind,
 
 Report plan_report(const PlannedMission& planned) {
   Report report = base_report(planned, ReportKind::kPlan, {});
+  if (planned.plan.vehicles.size() > 1) {
+    report.tiles.push_back(
+        tile("Vehicles", static_cast<double>(planned.plan.vehicles.size()), 1.0, ""));
+  }
   report.tiles.push_back(tile("Rows", static_cast<double>(planned.mission.rows.size()), 1.0, ""));
   add_plan_tiles(planned, report);
-  report.series = planned_series(planned.plan.vehicles.front());
+  for (std::size_t v = 0; v < report.vehicles.size(); ++v) {
+    report.vehicles[v].series = planned_series(planned.plan.vehicles[v]);
+    report.vehicles[v].stops = charge_stops(planned.plan.vehicles[v], nullptr);
+  }
   return report;
 }
 
-Report run_report(const PlannedMission& planned, const Run& run, double real_time_factor) {
-  const std::vector<PlanLeg>& legs = planned.plan.vehicles.front().legs;
+Report run_report(const PlannedMission& planned, const FleetRun& run, double real_time_factor) {
   std::set<std::string> rows_done;
-  for (std::size_t i = 0; i < legs.size(); ++i) {
-    if (legs[i].kind == LegKind::kRow && run.leg_done[i]) rows_done.insert(legs[i].id);
+  for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
+    const std::vector<PlanLeg>& legs = planned.plan.vehicles[v].legs;
+    for (std::size_t i = 0; i < legs.size(); ++i) {
+      if (legs[i].kind == LegKind::kRow && run.vehicles[v].leg_done[i])
+        rows_done.insert(legs[i].id);
+    }
   }
   Report report = base_report(planned, ReportKind::kRun, rows_done);
   const RunMetrics& m = run.metrics;
@@ -223,7 +301,10 @@ Report run_report(const PlannedMission& planned, const Run& run, double real_tim
       {"Duration", duration_text(m.duration_s), "",
        fmt::format("simulated {:.0f} times faster than real time", real_time_factor)});
   add_plan_tiles(planned, report);
-  report.series = driven_series(run);
+  for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
+    report.vehicles[v].series = driven_series(run.vehicles[v]);
+    report.vehicles[v].stops = charge_stops(planned.plan.vehicles[v], &run.vehicles[v]);
+  }
   return report;
 }
 

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-Run drive(const PlannedMission& planned, double realtime) {
+FleetRun drive(const PlannedMission& planned, double realtime) {
   ProgressBar bar("driving");
   const auto begin = Clock::now();
   const auto progress = [&](double fraction, double time_s) {
@@ -32,8 +32,9 @@ Run drive(const PlannedMission& planned, double realtime) {
     const double ahead = time_s / realtime - seconds_since(begin);
     if (ahead > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(ahead));
   };
-  return drive_plan(planned.plan.vehicles.front(), planned.mission.farm, planned.config.simulation,
-                    progress);
+  const Mission& mission = planned.mission;
+  return drive_fleet(planned.plan.vehicles, mission.visits, mission.farm, mission.ground,
+                     planned.config.simulation, progress);
 }
 
 }  // namespace
@@ -52,19 +53,20 @@ int run_command(const CommonOptions& options, double realtime) {
   if (!options.json) fmt::print("{}\n", plan_text(planned->plan, planned->planning_s));
   std::fflush(stdout);
   const auto begin = Clock::now();
-  const Run run = drive(*planned, realtime);
+  const FleetRun run = drive(*planned, realtime);
   const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
 
   const std::string metrics =
-      metrics_json(run, real_time_factor,
+      metrics_json(run, planned->plan.vehicles, real_time_factor,
                    make_stamp(planned->config.simulation.seed, planned->stamp.config_yaml));
   const auto written = write_report(
       run_report(*planned, run, real_time_factor), options.out,
       {{"summary.json", summary_json(planned->plan, planned->planning_s, planned->stamp)},
        {"plan.geojson", plan_geojson(planned->plan, planned->mission.farm, planned->stamp)},
        {"metrics.json", metrics},
-       {"trace.csv", trace_csv(run, planned->config.simulation.trace_period_s)},
-       {"run.mcap", run_mcap(run, planned->plan.vehicles.front(), planned->mission.farm,
+       {"trace.csv",
+        trace_csv(run, planned->plan.vehicles, planned->config.simulation.trace_period_s)},
+       {"run.mcap", run_mcap(run, planned->plan.vehicles, planned->mission.farm,
                              planned->config.simulation.trace_period_s)}});
   if (!written) return report_error(written.error(), options);
   if (options.json) {

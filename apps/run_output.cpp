@@ -10,14 +10,32 @@
 
 namespace headland::apps {
 
-std::string metrics_json(const Run& run, double real_time_factor, const Stamp& stamp) {
+std::string metrics_json(const FleetRun& run, const std::vector<VehiclePlan>& plans,
+                         double real_time_factor, const Stamp& stamp) {
   const RunMetrics& m = run.metrics;
   const TrackingMetrics& t = m.tracking;
+  nlohmann::ordered_json vehicles = nlohmann::ordered_json::array();
+  for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
+    const RunMetrics& one = run.vehicles[v].metrics;
+    vehicles.push_back({{"id", plans[v].id},
+                        {"completed", one.completed},
+                        {"rows_done", one.rows_done},
+                        {"rows_total", one.rows_total},
+                        {"charges", one.charges},
+                        {"energy_j", one.energy_j},
+                        {"duration_s", one.duration_s},
+                        {"waited_s", one.waited_s},
+                        {"min_soc", one.min_soc},
+                        {"overall_rms_m", one.tracking.overall_rms_m}});
+  }
   nlohmann::ordered_json document = {
       {"completed", m.completed},
       {"reason", m.reason},
       {"rows_done", m.rows_done},
       {"rows_total", m.rows_total},
+      {"visits_done", m.visits_done},
+      {"visits_total", m.visits_total},
+      {"charges", m.charges},
       {"tracking",
        {{"row_rms_m", t.row_rms_m},
         {"turn_rms_m", t.turn_rms_m},
@@ -28,6 +46,7 @@ std::string metrics_json(const Run& run, double real_time_factor, const Stamp& s
         {"ra_1pm", t.ra_1pm}}},
       {"energy_j", m.energy_j},
       {"duration_s", m.duration_s},
+      {"waited_s", m.waited_s},
       {"min_soc", m.min_soc},
       {"reserve_kept", m.reserve_kept},
       {"wrong_gear_count", m.wrong_gear_count},
@@ -36,6 +55,7 @@ std::string metrics_json(const Run& run, double real_time_factor, const Stamp& s
       {"collisions", 0},
       {"near_collisions", 0},
       {"protective_stops", 0},
+      {"vehicles", vehicles},
       {"headland",
        {{"version", stamp.version},
         {"seed", stamp.seed},
@@ -44,28 +64,31 @@ std::string metrics_json(const Run& run, double real_time_factor, const Stamp& s
   return document.dump(2) + "\n";
 }
 
-std::string trace_csv(const Run& run, double period) {
+std::string trace_csv(const FleetRun& run, const std::vector<VehiclePlan>& plans, double period) {
   std::string text =
-      "t_s,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,gear,leg\n";
+      "t_s,vehicle,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,"
+      "gear,leg\n";
   auto out = std::back_inserter(text);
-  for (const int tick : trace_ticks(run.trace, period)) {
-    const TraceRow& row = run.trace[static_cast<std::size_t>(tick)];
-    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, row.x_m, row.y_m,
-                   row.yaw_rad, row.speed_mps, row.steering_rad, row.yaw_rate_radps, row.s_m,
-                   row.cross_track_m, row.soc, static_cast<int>(row.gear), row.leg);
+  for (const FleetTick& at : fleet_ticks(run, period)) {
+    const TraceRow& row = run.vehicles[at.vehicle].trace[at.tick];
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, plans[at.vehicle].id,
+                   row.x_m, row.y_m, row.yaw_rad, row.speed_mps, row.steering_rad,
+                   row.yaw_rate_radps, row.s_m, row.cross_track_m, row.soc,
+                   static_cast<int>(row.gear), row.leg);
   }
   return text;
 }
 
-std::string run_text(const Run& run, double real_time_factor) {
+std::string run_text(const FleetRun& run, double real_time_factor) {
   const RunMetrics& m = run.metrics;
   return fmt::format(
       "run        {}{}\n"
-      "rows done  {} of {}\n"
+      "rows done  {} of {}{}\n"
       "tracking   {:.1f} mm RMS in rows, {:.1f} mm in turns, at most {:.1f} mm\n"
       "energy     {:.2f} kWh drawn, lowest state of charge {:.1f} %\n"
       "duration   {} simulated, {:.0f} times real time\n",
       m.completed ? "finished" : "NOT finished: ", m.reason, m.rows_done, m.rows_total,
+      m.visits_total > 0 ? fmt::format(", visits {} of {}", m.visits_done, m.visits_total) : "",
       1e3 * m.tracking.row_rms_m, 1e3 * m.tracking.turn_rms_m, 1e3 * m.tracking.max_m,
       m.energy_j / 3.6e6, 100.0 * m.min_soc, duration_text(m.duration_s), real_time_factor);
 }

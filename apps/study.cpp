@@ -8,6 +8,7 @@
 #include "apps/report_content.hpp"
 #include "apps/study_output.hpp"
 #include "sim/lab/ebs221_study.hpp"
+#include "sim/lab/energy_study.hpp"
 #include "sim/lab/polito_study.hpp"
 
 namespace headland::apps {
@@ -37,11 +38,16 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
       return run_polito_study(config, jobs);
     });
   }
+  if (name == "energy") {
+    return run_as<EnergyStudyConfig>(node, max_episodes, [&](const EnergyStudyConfig& config) {
+      return run_energy_study(config, jobs);
+    });
+  }
   Location where = study ? study->where() : node.where();
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: ebs221, polito", where);
+              "allowed: ebs221, energy, polito", where);
 }
 
 }  // namespace

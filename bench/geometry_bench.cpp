@@ -11,6 +11,7 @@
 #include <ompl/base/spaces/DubinsStateSpace.h>
 #include <ompl/base/spaces/ReedsSheppStateSpace.h>
 
+#include "core/geometry/clothoid.hpp"
 #include "core/geometry/dubins.hpp"
 #include "core/geometry/reeds_shepp.hpp"
 #include "tests/support/curve_constructions.hpp"
@@ -176,6 +177,10 @@ void reeds_shepp_length_ompl(benchmark::State& state) {
   run(state, [&](const Query& q) { return ompl.distance(q); });
 }
 
+void clothoid_headland(benchmark::State& state) {
+  run(state, [](const Query& q) { return fit_clothoid(q.from, q.to); });
+}
+
 // All queries once a repetition; the median holds off what else the machine does.
 void repeated(benchmark::internal::Benchmark* entry) {
   entry->Iterations(kCount)->Repetitions(15)->ReportAggregatesOnly(true)->Unit(
@@ -187,6 +192,7 @@ BENCHMARK(dubins_length_ompl)->Apply(repeated);
 BENCHMARK(reeds_shepp_length_headland)->Apply(repeated);
 BENCHMARK(reeds_shepp_curve_headland)->Apply(repeated);
 BENCHMARK(reeds_shepp_length_ompl)->Apply(repeated);
+BENCHMARK(clothoid_headland)->Apply(repeated);
 
 }  // namespace
 }  // namespace headland

@@ -5,6 +5,7 @@
 #include "core/config/visit.hpp"
 #include "core/model/drive_cost.hpp"
 #include "core/model/kinematics.hpp"
+#include "core/world/ground.hpp"
 
 namespace headland {
 
@@ -22,28 +23,37 @@ struct SensorConfig {
   }
 };
 
-/// A vehicle and its battery in lock-step simulation on flat ground. Deterministic for a seed.
+/// A vehicle and its battery in lock-step simulation. It draws by the same model as plans do, but
+/// at its true speed, acceleration, curvature and slope. Deterministic for a seed.
 class SimulatedVehicle {
  public:
   SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, double soc,
-                   const SensorConfig& sensors, std::uint64_t seed);
+                   const SensorConfig& sensors, std::uint64_t seed,
+                   const Ground& ground = Ground());
 
-  /// Drives `dt` [s] under a held command; `kind` says whether the implement is at work.
+  /// Drives `dt` [s] under a held command; `kind` says whether the implement is at work. Beyond the
+  /// terrain it goes on at the last height. What a full battery cannot take is lost.
   void step(const Command& command, LegKind kind, double dt);
-  /// Stands at a charger that gives `power` [W] until full; returns the time it took [s].
-  double charge_full(double power);
+  /// Draws energy [J] for anything but driving.
+  void draw(double energy);
+  /// Stands at a charger up to `to_soc`; returns the time it takes [s]. Nothing where it has that
+  /// charge already.
+  double charge(const ChargeCurve& curve, double to_soc);
 
   const VehicleState& truth() const { return state_; }
   /// The state as sensors give it: a new fix at every call.
   VehicleState measure();
   double soc() const { return energy_j_ / vehicle_.battery.capacity_j(); }
-  double drawn_j() const { return drawn_j_; }
+  double drawn_j() const { return drawn_j_; }  ///< net of what was recuperated
+  double height() const { return height_; }    ///< of the ground under it [m]
 
  private:
   Vehicle vehicle_;
   SensorConfig sensors_;
+  Ground ground_;
   RandomStream noise_;
   VehicleState state_;
+  double height_;
   double energy_j_;
   double drawn_j_ = 0.0;
 };

@@ -19,11 +19,14 @@ export function bin_of(error: number|null|undefined, full_scale: number): number
   return Math.min(kBins - 1, Math.floor(Math.abs(error) / full_scale * kBins));
 }
 
-/// Samples `first` to `last`, relative to the origin given.
-export function make_driven(series: Series, full_scale_m: number, origin: [number, number],
-                            first: number, last: number): Path2D[] {
+export function empty_bins(): Path2D[] {
+  return Array.from({length: kBins}, () => new Path2D());
+}
+
+/// Adds samples `first` to `last`, relative to the origin given.
+export function add_driven(bins: Path2D[], series: Series, full_scale_m: number, origin: [number, number],
+                           first: number, last: number): void {
   const [origin_x, origin_y] = origin;
-  const bins = Array.from({length: kBins}, () => new Path2D());
   let bin = -1;
   for (let i = first + 1; i <= last; ++i) {
     const next = bin_of(series.error_m[i], full_scale_m);
@@ -33,5 +36,4 @@ export function make_driven(series: Series, full_scale_m: number, origin: [numbe
     }
     bins[bin]!.lineTo(series.x_m[i]! - origin_x, series.y_m[i]! - origin_y);
   }
-  return bins;
 }

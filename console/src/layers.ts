@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map's layers, bottom first: how each is drawn and called.
-import {Feature, LegKind} from './types';
+import {kFleetDashes, series_name} from './color';
+import {Feature, LegKind, Terrain, Vehicle} from './types';
 
 export type Mark = 'square'|'circle'|'diamond'|'bolt';
 
@@ -15,10 +16,12 @@ export interface Layer {
 }
 
 export const kLayers: Layer[] = [
+  {key: 'terrain', label: 'Relief'},
   {key: 'headland', label: 'Drivable area', fill: 'map-drivable'},
   {key: 'road', label: 'Roads', stroke: 'map-road', width: 3},
   {key: 'parcel', label: 'Parcels', fill: 'map-parcel', stroke: 'map-parcel-edge', width: 1.2},
   {key: 'keep_out', label: 'Keep-outs', fill: 'map-keep-out', stroke: 'map-keep-out-edge', width: 1},
+  {key: 'contours', label: 'Contours', stroke: 'contour', width: 0.8},
   {key: 'row', label: 'Rows', stroke: 'map-row', width: 1.2},
   {key: 'row_done', label: 'Rows done', stroke: 'map-row-done', width: 2.4},
   {key: 'plan_row', label: 'Plan: rows', stroke: 'leg-row', width: 1.8},
@@ -37,21 +40,38 @@ const kLegLayers: Record<LegKind, string> = {
   row: 'plan_row',
   turn: 'plan_turn',
   transit: 'plan_transit',
+  task: 'plan_transit',
   charge: 'plan_charge',
 };
 
 const kAliases: Record<string, string> = {drivable: 'headland', row_parcel: 'parcel', free_parcel: 'parcel'};
 
-export function layer_of(feature: Feature): Layer {
-  const kind = kAliases[feature.kind] ?? feature.kind;
-  const key = kind === 'plan' ? kLegLayers[feature.leg_kind ?? 'transit'] ?? 'plan_transit' : kind;
-  return kLayers.find((layer) => layer.key === key) ?? kOther;
-}
+/// The layers of one map. The plans of several vehicles are told apart by vehicle, that of a single
+/// one by what is driven.
+export class LayerSet {
+  private readonly fleet: Layer[];
 
-/// The layers that a list of features uses, bottom first.
-export function layers_of(features: Feature[], driven: boolean): Layer[] {
-  const used = new Set(features.map(layer_of));
-  return [...kLayers, kOther].filter((layer) => used.has(layer) || (driven && layer.key === 'driven'));
+  constructor(vehicles: Vehicle[]) {
+    this.fleet = vehicles.length < 2 ? [] : vehicles.map((vehicle, i) => ({
+      key: `vehicle_${i}`, label: vehicle.name, stroke: series_name(i), width: 2, dash: kFleetDashes[i % kFleetDashes.length],
+    }));
+  }
+
+  of(feature: Feature): Layer {
+    const kind = kAliases[feature.kind] ?? feature.kind;
+    if (kind !== 'plan') return kLayers.find((layer) => layer.key === kind) ?? kOther;
+    const key = kLegLayers[feature.leg_kind ?? 'transit'] ?? 'plan_transit';
+    return this.fleet[feature.vehicle ?? -1] ?? kLayers.find((layer) => layer.key === key)!;
+  }
+
+  /// Those that a map uses, bottom first.
+  used(features: Feature[], driven: boolean, terrain: Terrain|undefined): Layer[] {
+    const used = new Set(features.map((feature) => this.of(feature)));
+    const shown = (layer: Layer) => used.has(layer) || (driven && layer.key === 'driven') ||
+        (terrain !== undefined && (layer.key === 'terrain' || layer.key === 'contours'));
+    const plans = kLayers.findIndex((layer) => layer.key === 'plan_row');
+    return [...kLayers.slice(0, plans), ...this.fleet, ...kLayers.slice(plans), kOther].filter(shown);
+  }
 }
 
 /// Rings or lines of a feature; a point is a line of one position.

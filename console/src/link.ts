@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the map, the plots and the tables tell each other.
 
+export interface Cursor {
+  s: number;            // driven distance [m]
+  vehicle: number|null; // null: all of them
+}
+
+export interface LegOf {
+  vehicle: number;
+  leg: number;
+}
+
 export interface Selection {
-  sample: number|null;          // index of the sample under the pointer
+  cursor: Cursor|null;          // under the pointer
   range: [number, number]|null; // driven distance shown in the plots [m]; null: all
-  leg: number|null;             // leg picked in a table
+  leg: LegOf|null;              // picked in a table
 }
 
 export class Link {
-  private state: Selection = {sample: null, range: null, leg: null};
+  private state: Selection = {cursor: null, range: null, leg: null};
   private listeners: ((state: Selection, what: keyof Selection) => void)[] = [];
 
   get current(): Readonly<Selection> {
@@ -21,5 +31,10 @@ export class Link {
     if (this.state[what] === value) return;
     this.state[what] = value;
     for (const listener of this.listeners) listener(this.state, what);
+  }
+  /// Picks a leg, or lets it go if it is picked.
+  toggle_leg(leg: LegOf): void {
+    const now = this.state.leg;
+    this.set('leg', now && now.vehicle === leg.vehicle && now.leg === leg.leg ? null : leg);
   }
 }

@@ -5,20 +5,25 @@ import {select} from 'd3-selection';
 import {ZoomTransform, zoom, zoomIdentity, zoomTransform} from 'd3-zoom';
 import {bisectLeft} from 'd3-array';
 
-import {Theme, ramp} from './color';
+import {Theme, ramp, series_color} from './color';
 import {begin_drawing, element, once_per_frame} from './dom';
-import {error_scale, kBins, make_driven} from './driven';
-import {Layer, layer_of, layers_of, lines_of} from './layers';
+import {add_driven, empty_bins, error_scale, kBins} from './driven';
+import {fixed, number} from './format';
+import {Layer, LayerSet, lines_of} from './layers';
 import {legend} from './legend';
-import {Link} from './link';
-import {Labels, coordinates_text, make_path, paint_color_bar, paint_layer, paint_mark, paint_north,
+import {LegOf, Link} from './link';
+import {ColorBar, Labels, coordinates_text, make_path, paint_color_bars, paint_dot, paint_layer, paint_mark, paint_north,
         paint_scale_bar} from './map_paint';
+import {nearest} from './plot';
 import {sample_rows} from './sample';
-import {Feature, Position, Series} from './types';
+import {Relief, tint_text} from './terrain';
+import {Feature, Position, Report, Terrain, Vehicle} from './types';
 import {Bounds, View, empty_bounds, extend, nearest_sample} from './view';
 
 const kMaxZoom = 400;
+const kFillOnRelief = 0.45; // opacity of areas above the relief
 const kBandWidth = 0.6; // m; of a plan below a driven path
+const kFleetBand = 6;  // px; the same where there are several vehicles
 const kGrab = 28; // px within which the pointer catches the nearest sample
 
 export class MapView {
@@ -30,6 +35,11 @@ export class MapView {
   });
   private readonly tip = element('div', {class: 'tip', hidden: true});
   private readonly readout = element('output', {class: 'readout', 'aria-label': 'Coordinates'});
+  private readonly features: Feature[];
+  private readonly vehicles: Vehicle[];
+  private readonly terrain: Terrain|undefined;
+  private readonly relief: Relief|null;
+  private readonly set: LayerSet;
   private readonly layers: Layer[];
   private readonly hidden = new Set<Layer>();
   private readonly paths = new Map<Layer, Path2D>();
@@ -44,20 +54,23 @@ export class MapView {
   private readonly draw = once_per_frame(() => this.paint());
   private readonly draw_overlay = once_per_frame(() => this.paint_overlay());
 
-  constructor(private readonly features: Feature[], private readonly series: Series, private readonly link: Link,
-              private readonly theme: () => Theme) {
-    this.has_driven = series.x_m.length > 1 && series.error_m.length > 0;
-    this.layers = layers_of(features, this.has_driven);
+  constructor(report: Report, private readonly link: Link, private readonly theme: () => Theme) {
+    const features = this.features = report.map.features;
+    this.vehicles = report.vehicles;
+    this.terrain = report.terrain;
+    this.relief = report.terrain ? new Relief(report.terrain) : null;
+    this.has_driven = this.vehicles.some(({series}) => series.x_m.length > 1 && series.error_m.length > 0);
+    this.set = new LayerSet(this.vehicles);
+    this.layers = this.set.used(features, this.has_driven, this.terrain);
     for (const f of features) for (const line of lines_of(f)) for (const [x, y] of line) extend(this.bounds, x, y);
-    series.x_m.forEach((x, i) => extend(this.bounds, x, series.y_m[i]!));
+    for (const {series} of this.vehicles) series.x_m.forEach((x, i) => extend(this.bounds, x, series.y_m[i]!));
     this.origin = [(this.bounds.min_x + this.bounds.max_x) / 2, (this.bounds.min_y + this.bounds.max_y) / 2];
     for (const layer of this.layers) {
-      this.paths.set(layer, make_path(features.filter((f) => layer_of(f) === layer), this.origin));
+      this.paths.set(layer, layer.key === 'contours' ? this.relief!.contours(this.origin) :
+          make_path(features.filter((f) => this.set.of(f) === layer), this.origin));
     }
-    this.full_scale_m = error_scale(series.error_m);
-    if (this.has_driven) {
-      this.driven = make_driven(series, this.full_scale_m, this.origin, 0, series.x_m.length - 1);
-    }
+    this.full_scale_m = error_scale(this.vehicles.flatMap(({series}) => series.error_m));
+    if (this.has_driven) this.driven = this.driven_between(-Infinity, Infinity);
     this.view = new View(this.bounds, 1, 1);
     this.root = this.build();
     this.connect();
@@ -81,7 +94,7 @@ export class MapView {
         button('Show all', '\u2922', () => this.fit()));
     return element('section', {class: 'card map-card', 'aria-label': 'Map'},
         element('div', {class: 'map-frame'}, this.ground, this.overlay, controls, this.readout, this.tip),
-        legend(this.layers, (layer, shown) => {
+        legend(this.layers, this.relief ? {contours: `Contours, every ${number(this.relief.interval_m)} m`} : {}, (layer, shown) => {
           if (shown) this.hidden.delete(layer);
           else this.hidden.add(layer);
           this.draw();
@@ -96,7 +109,7 @@ export class MapView {
     this.overlay.addEventListener('pointerleave', () => {
       this.tip.hidden = true;
       this.readout.textContent = '';
-      this.link.set('sample', null);
+      this.link.set('cursor', null);
     });
     this.overlay.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => {
@@ -104,7 +117,7 @@ export class MapView {
       this.repaint();
     }).observe(this.overlay);
     this.link.listen((state, what) => {
-      if (what === 'sample') this.draw_overlay();
+      if (what === 'cursor') this.draw_overlay();
       if (what === 'range') this.show_range(state.range);
       if (what === 'leg' && state.leg !== null) this.fit(this.leg_bounds(state.leg));
       if (what === 'leg') this.repaint();
@@ -155,24 +168,29 @@ export class MapView {
     this.zoom.transform(select(this.overlay), target);
   }
 
-  private leg_bounds(leg: number): Bounds {
+  private leg_bounds(leg: LegOf): Bounds {
     const bounds = empty_bounds();
     for (const f of this.leg_features(leg)) for (const line of lines_of(f)) for (const [x, y] of line) extend(bounds, x, y);
-    this.series.leg.forEach((l, i) => l === leg && extend(bounds, this.series.x_m[i]!, this.series.y_m[i]!));
+    const series = this.vehicles[leg.vehicle]?.series;
+    series?.leg.forEach((l, i) => l === leg.leg && extend(bounds, series.x_m[i]!, series.y_m[i]!));
     return bounds;
   }
-  private leg_features(leg: number): Feature[] {
-    return this.features.filter((f) => f.leg === leg);
+  private leg_features(leg: LegOf): Feature[] {
+    return this.features.filter((f) => f.leg === leg.leg && (f.vehicle ?? 0) === leg.vehicle);
+  }
+
+  private driven_between(from_s: number, to_s: number): Path2D[] {
+    const bins = empty_bins();
+    for (const {series} of this.vehicles) {
+      const first = Math.max(0, bisectLeft(series.s_m, from_s) - 1);
+      const last = Math.min(series.s_m.length - 1, bisectLeft(series.s_m, to_s));
+      add_driven(bins, series, this.full_scale_m, this.origin, first, last);
+    }
+    return bins;
   }
 
   private show_range(range: [number, number]|null): void {
-    this.focus = null;
-    if (range && this.has_driven) {
-      const last = this.series.s_m.length - 1;
-      const first = Math.max(0, bisectLeft(this.series.s_m, range[0]) - 1);
-      this.focus = make_driven(this.series, this.full_scale_m, this.origin, first,
-                               Math.min(last, bisectLeft(this.series.s_m, range[1])));
-    }
+    this.focus = range && this.has_driven ? this.driven_between(...range) : null;
     this.draw();
   }
 
@@ -180,15 +198,28 @@ export class MapView {
     const t = this.transform();
     const [x, y] = this.view.to_ground((px - t.x) / t.k, (py - t.y) / t.k);
     this.readout.textContent = coordinates_text(x, y);
-    const sample = nearest_sample(this.series.x_m, this.series.y_m, x, y, kGrab / this.scale());
-    this.link.set('sample', sample < 0 ? null : sample);
-    this.tip.hidden = sample < 0;
-    if (sample < 0) return;
-    this.tip.replaceChildren(...sample_rows(this.series, sample));
-    const [tx, ty] = this.to_screen(this.series.x_m[sample]!, this.series.y_m[sample]!);
+    const found = this.nearest_of_all(x, y);
+    this.link.set('cursor', found ? {s: this.vehicles[found.vehicle]!.series.s_m[found.sample]!, vehicle: found.vehicle} : null);
+    this.tip.hidden = !found;
+    if (!found) return;
+    const {name, series} = this.vehicles[found.vehicle]!;
+    this.tip.replaceChildren(...sample_rows(series, found.sample, this.vehicles.length > 1 ? name : ''));
+    const [tx, ty] = this.to_screen(series.x_m[found.sample]!, series.y_m[found.sample]!);
     const right = tx + 24 + this.tip.offsetWidth < this.overlay.clientWidth;
     this.tip.style.left = `${right ? tx + 16 : Math.max(4, tx - 16 - this.tip.offsetWidth)}px`;
     this.tip.style.top = `${Math.max(4, Math.min(ty + 12, this.overlay.clientHeight - this.tip.offsetHeight - 4))}px`;
+  }
+
+  private nearest_of_all(x: number, y: number): {vehicle: number, sample: number}|null {
+    let found: {vehicle: number, sample: number}|null = null;
+    let limit = kGrab / this.scale();
+    this.vehicles.forEach(({series}, vehicle) => {
+      const sample = nearest_sample(series.x_m, series.y_m, x, y, limit);
+      if (sample < 0) return;
+      found = {vehicle, sample};
+      limit = Math.hypot(series.x_m[sample]! - x, series.y_m[sample]! - y);
+    });
+    return found;
   }
 
   /// Makes the metre, counted from the origin, the context's unit; `draw` paints within.
@@ -210,7 +241,8 @@ export class MapView {
     const shown = this.layers.filter((layer) => !this.hidden.has(layer));
     this.in_metres(context, (scale) => {
       for (const layer of shown) {
-        if (layer.key === 'driven') this.paint_driven(context, layer, scale, theme);
+        if (layer.key === 'terrain') this.relief?.paint(context, this.origin, theme.dark);
+        else if (layer.key === 'driven') this.paint_driven(context, layer, scale, theme);
         else this.paint_ground(context, layer, scale, theme);
       }
     });
@@ -218,16 +250,30 @@ export class MapView {
     const {clientWidth: width, clientHeight: height} = this.ground;
     paint_scale_bar(context, height, this.scale(), theme);
     paint_north(context, theme);
-    if (this.has_driven && shown.some((l) => l.key === 'driven')) {
-      paint_color_bar(context, width, height, this.full_scale_m, theme);
+    paint_color_bars(context, width, height, this.color_bars(shown, theme), theme);
+  }
+
+  private color_bars(shown: Layer[], theme: Theme): ColorBar[] {
+    const bars: ColorBar[] = [];
+    if (this.has_driven && shown.some((layer) => layer.key === 'driven')) {
+      bars.push({title: 'Cross-track error [mm]', short: '|error| [mm]', color: (t) => ramp(t, theme.dark), low: '0',
+                 high: '\u2265 ' + number(1000 * this.full_scale_m)});
     }
+    if (this.terrain && shown.some((layer) => layer.key === 'terrain')) {
+      bars.push({title: 'Height [m]', short: 'Height [m]', color: (t) => tint_text(t, theme.dark),
+                 low: fixed(this.terrain.low_m, 1), high: fixed(this.terrain.high_m, 1)});
+    }
+    return bars;
   }
 
   // Below a driven path the planned one is a soft band, so that both can be seen.
   private paint_ground(context: CanvasRenderingContext2D, layer: Layer, scale: number, theme: Theme): void {
-    const band = this.has_driven && layer.key.startsWith('plan_');
-    context.globalAlpha = band ? 0.32 : 1;
-    paint_layer(context, band ? {...layer, width: Math.min(7, kBandWidth * scale), dash: []} : layer, this.paths.get(layer)!, scale, theme);
+    const band = this.has_driven && /^(plan|vehicle)_/.test(layer.key);
+    const on_relief = layer.fill !== undefined && this.layers.some((l) => l.key === 'terrain' && !this.hidden.has(l));
+    const fleet = this.vehicles.length > 1; // whose band alone tells whose driven path it is
+    const width = fleet ? kFleetBand : Math.min(7, kBandWidth * scale);
+    context.globalAlpha = band ? (fleet ? 0.6 : 0.32) : on_relief ? kFillOnRelief : 1;
+    paint_layer(context, band ? {...layer, width, dash: []} : layer, this.paths.get(layer)!, scale, theme);
     context.globalAlpha = 1;
   }
 
@@ -245,8 +291,9 @@ export class MapView {
 
   private paint_marks(context: CanvasRenderingContext2D, shown: Layer[], theme: Theme): void {
     const labels = new Labels(context, theme);
+    if (this.vehicles.length > 1) this.paint_starts(context, shown, theme);
     for (const f of this.features) {
-      const layer = layer_of(f);
+      const layer = this.set.of(f);
       if (f.type !== 'Point' || !shown.includes(layer)) continue;
       const [x, y] = this.to_screen(...(f.coordinates as Position));
       paint_mark(context, layer.mark ?? 'diamond', x, y, theme.get(layer.stroke ?? 'muted'), theme.get('map-ground'));
@@ -255,11 +302,20 @@ export class MapView {
     }
   }
 
+  // Where the vehicles of a fleet start, below the marks of places.
+  private paint_starts(context: CanvasRenderingContext2D, shown: Layer[], theme: Theme): void {
+    this.vehicles.forEach(({series}, i) => {
+      if (series.x_m.length === 0 || !shown.some((layer) => layer.key === `vehicle_${i}`)) return;
+      const [x, y] = this.to_screen(series.x_m[0]!, series.y_m[0]!);
+      paint_dot(context, x, y, series_color(i, theme), theme);
+    });
+  }
+
   private paint_overlay(): void {
     const context = begin_drawing(this.overlay);
     if (!context) return;
     const theme = this.theme();
-    const {sample, leg} = this.link.current;
+    const {cursor, leg} = this.link.current;
     if (leg !== null) {
       this.in_metres(context, (scale) => {
         context.strokeStyle = theme.get('accent');
@@ -268,14 +324,12 @@ export class MapView {
         context.stroke(make_path(this.leg_features(leg), this.origin));
       });
     }
-    if (sample === null || sample >= this.series.x_m.length) return;
-    const [x, y] = this.to_screen(this.series.x_m[sample]!, this.series.y_m[sample]!);
-    context.beginPath();
-    context.arc(x, y, 6.5, 0, 2 * Math.PI);
-    context.fillStyle = theme.get('accent');
-    context.strokeStyle = theme.get('card');
-    context.lineWidth = 2.5;
-    context.fill();
-    context.stroke();
+    if (cursor === null) return;
+    this.vehicles.forEach(({series}, i) => {
+      if (series.x_m.length === 0 || (cursor.vehicle ?? i) !== i) return;
+      const sample = nearest(series.s_m, cursor.s);
+      paint_dot(context, ...this.to_screen(series.x_m[sample]!, series.y_m[sample]!),
+                this.vehicles.length > 1 ? series_color(i, theme) : theme.get('accent'), theme);
+    });
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws the map's ground, its marks and its furniture (scale bar, north arrow, colour bar).
 import {fixed, number} from './format';
-import {Theme, ramp} from './color';
+import {Theme} from './color';
 import {Layer, Mark, lines_of} from './layers';
 import {Feature, Position} from './types';
 import {round_length} from './view';
@@ -127,29 +127,53 @@ export function paint_north(context: CanvasRenderingContext2D, theme: Theme): vo
   context.textAlign = 'left';
 }
 
-/// The colours of |error|; right edge at `right`.
-export function paint_color_bar(context: CanvasRenderingContext2D, right: number, height: number,
-                                full_scale_m: number, theme: Theme): void {
-  const width = right < 480 ? 84 : 120;
-  const [x, y] = [right - 16 - width, height - 40];
-  context.fillStyle = theme.get('map-panel');
+/// What colours mean, from low to high.
+export interface ColorBar {
+  title: string;
+  short: string; // where there is little room
+  color: (t: number) => string;
+  low: string;
+  high: string;
+}
+
+/// Bars beside each other, or where there is little room above each other; the right edge at `right`.
+export function paint_color_bars(context: CanvasRenderingContext2D, right: number, height: number, bars: ColorBar[],
+                                 theme: Theme): void {
+  const narrow = right < 480;
+  const width = narrow ? 84 : 120;
+  bars.forEach((bar, i) => {
+    const x = right - 16 - width - (narrow ? 0 : i * (width + 36));
+    const y = height - 40 - (narrow ? i * 60 : 0);
+    context.fillStyle = theme.get('map-panel');
+    context.beginPath();
+    context.rect(x - 12, y - 22, width + 24, 54);
+    context.fill();
+    const gradient = context.createLinearGradient(x, 0, x + width, 0);
+    for (let k = 0; k <= 12; ++k) gradient.addColorStop(k / 12, bar.color(k / 12));
+    context.fillStyle = gradient;
+    context.fillRect(x, y, width, 8);
+    context.fillStyle = theme.get('text');
+    context.font = font(11, 500);
+    context.textBaseline = 'alphabetic';
+    context.textAlign = 'left';
+    context.fillText(narrow ? bar.short : bar.title, x, y - 8);
+    context.fillStyle = theme.get('muted');
+    context.fillText(bar.low, x, y + 22);
+    context.textAlign = 'right';
+    context.fillText(bar.high, x + width, y + 22);
+    context.textAlign = 'left';
+  });
+}
+
+/// Where the cursor is.
+export function paint_dot(context: CanvasRenderingContext2D, x: number, y: number, color: string, theme: Theme): void {
   context.beginPath();
-  context.rect(x - 12, y - 22, width + 24, 54);
+  context.arc(x, y, 6.5, 0, 2 * Math.PI);
+  context.fillStyle = color;
+  context.strokeStyle = theme.get('card');
+  context.lineWidth = 2.5;
   context.fill();
-  const gradient = context.createLinearGradient(x, 0, x + width, 0);
-  for (let i = 0; i <= 12; ++i) gradient.addColorStop(i / 12, ramp(i / 12, theme.dark));
-  context.fillStyle = gradient;
-  context.fillRect(x, y, width, 8);
-  context.fillStyle = theme.get('text');
-  context.font = font(11, 500);
-  context.textBaseline = 'alphabetic';
-  context.textAlign = 'left';
-  context.fillText(width < 100 ? '|error| [mm]' : 'Cross-track error [mm]', x, y - 8);
-  context.fillStyle = theme.get('muted');
-  context.fillText('0', x, y + 22);
-  context.textAlign = 'right';
-  context.fillText('\u2265 ' + number(1000 * full_scale_m), x + width, y + 22);
-  context.textAlign = 'left';
+  context.stroke();
 }
 
 export function coordinates_text(x: number, y: number): string {

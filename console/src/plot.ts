@@ -4,15 +4,16 @@
 import {bisectLeft} from 'd3-array';
 import {Scale, scaleLinear, scaleLog} from 'd3-scale';
 
-import {Theme, series_color} from './color';
+import {Theme, series_color, series_name} from './color';
 import {begin_drawing, element, once_per_frame} from './dom';
 import {number} from './format';
-import {font} from './map_paint';
+import {font, paint_mark} from './map_paint';
 import {line_points} from './thin';
 import {PlotData, PlotSeries} from './types';
 
 export interface PlotOptions {
-  reference?: {value: number, label: string}; // a level line, such as the reserve
+  references?: {value: number, label: string}[]; // level lines, such as the reserve
+  mark_label?: string;                           // what the series' marks are
   with_zero?: boolean;                        // zero is part of the axis
   y_format?: (value: number) => string;
   height?: number; // [px]
@@ -59,7 +60,7 @@ export class Plot {
       'aria-label': `${data.title}: ${data.y_label} over ${data.x_label}. Left and right move the cursor, ` +
           'plus and minus zoom, 0 shows all.',
     });
-    this.all_x = extent(data.series.flatMap((s) => extent(s.x)));
+    this.all_x = extent(data.series.flatMap((s) => ends(s.x)));
     this.y_domain = this.find_y_domain();
     this.root = this.build();
     this.connect();
@@ -81,9 +82,12 @@ export class Plot {
     const key = element('div', {class: 'plot-key'}, ...this.data.series.map((series, i) => {
       const value = element('output', {});
       this.values.push(value);
-      const dot = element('i', {'aria-hidden': 'true', style: `background: var(--series-${i % 7})`});
+      const dot = element('i', {'aria-hidden': 'true', style: key_style(series_name(i), series.dash)});
       return element('span', {}, ...(several ? [dot, series.name] : []), value);
     }));
+    if (this.options.mark_label && this.data.series.some((s) => s.marks?.length)) {
+      key.prepend(element('span', {}, element('i', {class: 'mark', 'aria-hidden': 'true'}), this.options.mark_label));
+    }
     const frame = element('div', {class: 'plot-frame', style: `height: ${this.options.height ?? 240}px`},
         this.canvas, this.overlay);
     return element('figure', {class: 'plot'},
@@ -150,8 +154,8 @@ export class Plot {
   private x_pixels: [number, number] = [0, 1];
 
   private find_y_domain(): [number, number] {
-    const values = this.data.series.flatMap((s) => extent(s.y.filter((v): v is number => v !== null && (!this.data.log_y || v > 0))));
-    if (this.options.reference) values.push(this.options.reference.value);
+    const values = this.data.series.flatMap((s) => ends(s.y.filter((v): v is number => v !== null && (!this.data.log_y || v > 0))));
+    values.push(...(this.options.references ?? []).map((reference) => reference.value));
     if (this.options.with_zero) values.push(0);
     const [low, high] = extent(values);
     if (low !== high) return [low, high];
@@ -178,7 +182,9 @@ export class Plot {
     context.rect(left - 4, 0, width - kRight - left + 8, height - kBottom + 4);
     context.clip();
     this.data.series.forEach((series, i) => this.paint_series(context, series, series_color(i, theme)));
-    this.paint_reference(context, theme, left, width - kRight);
+    for (const reference of this.options.references ?? []) this.paint_reference(context, reference, theme);
+    this.data.series.forEach((series, i) => (series.marks ?? []).forEach(([x, y]) => paint_mark(
+        context, 'bolt', this.x(x), this.y(y), series_color(i, theme), theme.get('card'))));
     context.restore();
   }
 
@@ -250,6 +256,7 @@ export class Plot {
     }
     context.lineWidth = 1.6;
     context.lineJoin = 'round';
+    context.setLineDash(series.dash ?? []);
     context.beginPath();
     let pen = false;
     for (const [px, py] of line_points(series, this.x, y_of, this.x_pixels)) {
@@ -258,11 +265,12 @@ export class Plot {
       else context.moveTo(px, py), pen = true;
     }
     context.stroke();
+    context.setLineDash([]);
   }
 
-  private paint_reference(context: CanvasRenderingContext2D, theme: Theme, left: number, right: number): void {
-    const reference = this.options.reference;
-    if (!reference) return;
+  private paint_reference(context: CanvasRenderingContext2D, reference: {value: number, label: string},
+                          theme: Theme): void {
+    const [left, right] = this.x_pixels;
     const y = Math.round(this.y(reference.value)) + 0.5;
     context.strokeStyle = context.fillStyle = theme.get('bad');
     context.setLineDash([5, 4]);
@@ -321,6 +329,13 @@ export class Plot {
   }
 }
 
+/// A dash of a plot's key.
+export function key_style(color: string, dash: number[] = []): string {
+  let end = 0;
+  const stops = dash.map((length, i) => `${i % 2 ? 'transparent' : `var(--${color})`} ${end}px ${end += length}px`);
+  return 'background: ' + (stops.length ? `repeating-linear-gradient(90deg, ${stops.join(', ')})` : `var(--${color})`);
+}
+
 /// Index of the value nearest to x in a rising list.
 export function nearest(values: number[], x: number): number {
   const right = Math.min(bisectLeft(values, x), values.length - 1);
@@ -328,11 +343,17 @@ export function nearest(values: number[], x: number): number {
 }
 
 function extent(values: number[]): [number, number] {
+  const [low = 0, high = 1] = ends(values);
+  return [low, high];
+}
+
+// Lowest and highest; nothing of nothing.
+function ends(values: number[]): number[] {
   let low = Infinity;
   let high = -Infinity;
   for (const value of values) {
     if (value < low) low = value;
     if (value > high) high = value;
   }
-  return low <= high ? [low, high] : [0, 1];
+  return low <= high ? [low, high] : [];
 }

@@ -10,6 +10,7 @@ import {run_plots} from './run_plots';
 import {page_head, tiles} from './summary';
 import {table} from './table';
 import {Report} from './types';
+import {why} from './why';
 
 type Choice = 'auto'|'light'|'dark';
 const kChoices: Choice[] = ['auto', 'light', 'dark'];
@@ -50,11 +51,12 @@ function build(report: Report): void {
   const link = new Link();
   const page: Node[] = [page_head(report, button)];
   if (report.tiles.length) page.push(tiles(report.tiles));
-  const plots = run_plots(report.series, report.reserve_soc, link, get_theme);
-  const has_map = report.map.features.length > 0 || report.series.x_m.length > 0;
+  const names = report.vehicles.map((vehicle) => vehicle.name);
+  const plots = run_plots(report.vehicles, link, get_theme);
+  const has_map = report.map.features.length > 0 || report.vehicles.some((vehicle) => vehicle.series.x_m.length > 0);
   const row: Node[] = [];
   if (has_map) {
-    const map = new MapView(report.map.features, report.series, link, get_theme);
+    const map = new MapView(report, link, get_theme);
     parts.push(map);
     row.push(map.root);
   }
@@ -69,7 +71,8 @@ function build(report: Report): void {
     parts.push(plot);
     grid.append(plot.root);
   }
-  const tables = report.tables.map((data) => table(data, has_map ? link : null));
+  const tables = report.tables.map((data) => table(data, has_map ? link : null, names));
+  if (report.why.length) page.push(why(report.why, names, link));
   // A study's findings come first, its pictures after them.
   page.push(...tables, ...(report.plots.length ? [grid] : []));
   if (report.config_yaml) {

@@ -4,8 +4,9 @@ import {fixed} from './format';
 import {Series} from './types';
 
 /// What was measured at a sample, as pairs of name and value with its unit.
-export function describe_sample(series: Series, i: number): [string, string][] {
-  const rows: [string, string][] = [['Distance', fixed(series.s_m[i], 1) + ' m']];
+export function describe_sample(series: Series, i: number, vehicle = ''): [string, string][] {
+  const rows: [string, string][] = vehicle ? [['Vehicle', vehicle]] : [];
+  rows.push(['Distance', fixed(series.s_m[i], 1) + ' m']);
   const percent = series.soc[i];
   if (series.error_m.length) rows.push(['Error', fixed(series.error_m[i], 3) + ' m']);
   if (series.steering_deg.length) rows.push(['Steering', fixed(series.steering_deg[i], 1) + '\u00b0']);
@@ -15,7 +16,7 @@ export function describe_sample(series: Series, i: number): [string, string][] {
   return rows;
 }
 
-export function sample_rows(series: Series, i: number): HTMLElement[] {
-  return describe_sample(series, i).map(
+export function sample_rows(series: Series, i: number, vehicle = ''): HTMLElement[] {
+  return describe_sample(series, i, vehicle).map(
       ([name, value]) => element('div', {}, element('span', {}, name), element('b', {}, value)));
 }

@@ -24,8 +24,11 @@ function number_format(values: Value[]): (value: number) => string {
 }
 
 /// A table that sorts by its headers; a long one can be searched. Numbers of a column named "leg"
-/// show that leg on the map.
-export function table(data: TableData, link: Link|null): HTMLElement {
+/// show that leg on the map: of the vehicle that a column of that name holds, or of the first.
+export function table(data: TableData, link: Link|null, vehicles: string[] = []): HTMLElement {
+  const column_of = (name: string) => data.columns.findIndex((column) => column.name.toLowerCase() === name);
+  const leg_column = column_of('leg');
+  const vehicle_column = column_of('vehicle');
   const body = element('tbody');
   const count = element('span', {class: 'hint', role: 'status'});
   const search = element('input', {type: 'search', placeholder: 'Search', 'aria-label': `Search in ${data.title}`});
@@ -33,12 +36,14 @@ export function table(data: TableData, link: Link|null): HTMLElement {
   const formats = data.columns.map((_, c) => number_format(data.rows.map((r) => r[c] ?? null)));
   let sorted: {column: number, direction: 1|-1}|null = null;
 
-  const cell = (value: Value|undefined, c: number) => {
+  const cell = (row: Value[], c: number) => {
+    const value = row[c];
     const text = typeof value === 'number' ? formats[c]!(value) : text_of(value);
     const td = element('td', {class: is_number[c] ? 'number' : ''});
-    if (link && typeof value === 'number' && data.columns[c]!.name.toLowerCase() === 'leg') {
+    if (link && typeof value === 'number' && c === leg_column) {
+      const vehicle = vehicle_column < 0 ? 0 : vehicles.indexOf(String(row[vehicle_column]));
       td.append(element('button', {type: 'button', class: 'link', title: 'Show on the map',
-                                   click: () => link.set('leg', link.current.leg === value ? null : value)}, text));
+                                   click: () => link.toggle_leg({vehicle, leg: value})}, text));
     } else {
       td.textContent = text;
     }
@@ -54,7 +59,7 @@ export function table(data: TableData, link: Link|null): HTMLElement {
       const {column, direction} = sorted;
       rows = [...rows].sort((a, b) => compare(a[column], b[column], direction));
     }
-    body.replaceChildren(...rows.map((row) => element('tr', {}, ...data.columns.map((_, c) => cell(row[c], c)))));
+    body.replaceChildren(...rows.map((row) => element('tr', {}, ...data.columns.map((_, c) => cell(row, c)))));
     count.textContent = rows.length === data.rows.length ? `${rows.length} rows` : `${rows.length} of ${data.rows.length} rows`;
   };
   const headers = data.columns.map((column, c) => {

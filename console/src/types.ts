@@ -11,7 +11,7 @@ export interface Tile {
 }
 
 export type Position = [number, number]; // [m] east, north of the farm's origin
-export type LegKind = 'row' | 'turn' | 'transit' | 'charge';
+export type LegKind = 'row' | 'turn' | 'transit' | 'task' | 'charge';
 
 export interface Feature {
   kind: string; // a key of kLayers in layers.ts, or any other word (drawn in a neutral way)
@@ -19,6 +19,7 @@ export interface Feature {
   name?: string;
   type: 'Polygon' | 'LineString' | 'Point';
   coordinates: Position | Position[] | Position[][];
+  vehicle?: number; // of Report.vehicles
   leg?: number;
   leg_kind?: LegKind;
 }
@@ -35,6 +36,40 @@ export interface Series {
   leg: number[];
 }
 
+/// A charge on the way.
+export interface Stop {
+  s_m: number;
+  soc_from: number;
+  soc_to: number;
+  name: string;
+}
+
+export interface Vehicle {
+  name: string;
+  reserve_soc?: number;
+  series: Series;
+  stops: Stop[];
+}
+
+/// Heights on a grid of points, row by row from the south-west: unsigned, 16 bits, little end first,
+/// in base64; from 0 for low_m to 65534 for high_m, 65535 where there is none.
+export interface Terrain {
+  south_west_m: Position;
+  cell_m: number;
+  columns: number;
+  rows: number;
+  low_m: number;
+  high_m: number;
+  heights: string;
+}
+
+/// Why a leg is there, or a task is not.
+export interface Reason {
+  vehicle?: number;
+  leg?: number;
+  text: string;
+}
+
 export interface TableData {
   title: string;
   columns: {name: string; unit?: string}[];
@@ -46,6 +81,8 @@ export interface PlotSeries {
   x: number[];
   y: (number | null)[];
   style?: 'line' | 'points';
+  dash?: number[];            // [px]
+  marks?: [number, number][]; // events on the line
 }
 
 export interface PlotData {
@@ -66,8 +103,9 @@ export interface Report {
   config_yaml: string;
   tiles: Tile[];
   map: {features: Feature[]};
-  series: Series;
-  reserve_soc?: number;
+  vehicles: Vehicle[];
+  terrain?: Terrain;
+  why: Reason[];
   tables: TableData[];
   plots: PlotData[];
 }

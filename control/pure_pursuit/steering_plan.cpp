@@ -11,36 +11,71 @@ constexpr double kSlowest = 0.1;         // speed that a plan counts with at lea
 constexpr double kSameCurvature = 1e-6;  // [1/m]
 constexpr int kPasses = 6;               // of the solver, each linearised around the last
 
+double leg_speed(const Reference& reference, const PathPiece& piece) {
+  const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
+  return leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
+}
+
+// The fastest change of the steering angle along a piece [rad/m], where it bends least.
+double steering_per_metre(const PathPiece& piece, double wheelbase) {
+  const bool straightens = piece.curvature * piece.end_curvature() < 0.0;
+  const double least =
+      straightens ? 0.0 : std::min(std::abs(piece.curvature), std::abs(piece.end_curvature()));
+  return wheelbase * std::abs(piece.sharpness) / (1.0 + wheelbase * wheelbase * least * least);
+}
+
+struct ZoneMaker {
+  const Reference& reference;
+  const Vehicle& vehicle;
+  const SteeringPlanConfig& config;
+  std::vector<SpeedZone> zones;
+
+  double rate() const { return config.rate_use_ratio * vehicle.steering_rate_radps; }
+
+  void add(double begin_s, double end_s, double speed, double wanted) {
+    const double bounded = std::max(speed, config.least_speed_ratio * wanted);
+    if (bounded < wanted) zones.push_back({begin_s, end_s, bounded});
+  }
+
+  // Curvature that changes by c over the length l, centred at the step, leaves the path by
+  // c l^2 / 24 (twice integrated); the steering takes l = v t for it.
+  void add_step(double s, const PathPiece& before, const PathPiece& piece) {
+    const double from = before.end_curvature();
+    const double change = std::abs(piece.curvature - from);
+    const double wanted = leg_speed(reference, piece);
+    if (!(change > kSameCurvature && wanted > 0.0)) return;
+    const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
+                                 std::atan(vehicle.wheelbase_m * from));
+    const double seconds = turn / rate();
+    const double speed = std::sqrt(24.0 * config.step_error_m / change) / seconds;
+    const double half = 0.5 * std::max(speed, config.least_speed_ratio * wanted) * seconds;
+    add(s - half, s + half, speed, wanted);
+  }
+
+  // On a clothoid the steering keeps up at this speed.
+  void add_ramp(double s, const PathPiece& piece) {
+    const double wanted = leg_speed(reference, piece);
+    if (piece.sharpness == 0.0 || !(wanted > 0.0)) return;
+    add(s, s + piece.length, rate() / steering_per_metre(piece, vehicle.wheelbase_m), wanted);
+  }
+};
+
 }  // namespace
 
-// Curvature that changes by c over the length l, centred at the step, leaves the path by c l^2 / 24
-// (twice integrated); the steering takes l = v t for it.
 std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
                                       const SteeringPlanConfig& config) {
-  std::vector<SpeedZone> zones;
+  ZoneMaker maker{reference, vehicle, config, {}};
   double s = 0.0;
   const PathPiece* before = nullptr;
   for (const PathPiece& piece : reference.path.pieces()) {
-    if (before != nullptr && before->gear == piece.gear) {
-      const double change = std::abs(piece.curvature - before->curvature);
-      const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
-                                   std::atan(vehicle.wheelbase_m * before->curvature));
-      const double seconds = turn / (config.rate_use_ratio * vehicle.steering_rate_radps);
-      const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
-      const double wanted = leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
-      if (change > kSameCurvature && wanted > 0.0) {
-        const double length = std::sqrt(24.0 * config.step_error_m / change);
-        const double speed = std::max(length / seconds, config.least_speed_ratio * wanted);
-        const double half = 0.5 * speed * seconds;
-        if (speed < wanted) zones.push_back({s - half, s + half, speed});
-      }
-    }
+    if (before != nullptr && before->gear == piece.gear) maker.add_step(s, *before, piece);
+    maker.add_ramp(s, piece);
     before = &piece;
     s += piece.length;
   }
-  std::stable_sort(zones.begin(), zones.end(),
+  std::stable_sort(maker.zones.begin(), maker.zones.end(),
                    [](const SpeedZone& a, const SpeedZone& b) { return a.begin_s < b.begin_s; });
-  return zones;
+  return std::move(maker.zones);
 }
 
 struct SteeringPlan::Builder {
@@ -72,6 +107,13 @@ struct SteeringPlan::Builder {
     return config.margin_m + 2.0 * speed(segment, s) * seconds;
   }
 
+  // A clothoid along which the steering cannot keep up at the speed driven there.
+  bool too_sharp(int segment, double s, const PathPiece& piece) const {
+    const double turning = steering_per_metre(piece, vehicle.wheelbase_m);
+    return turning * speed(segment, s + 0.5 * piece.length) >
+           config.rate_use_ratio * vehicle.steering_rate_radps * (1.0 + 1e-9);
+  }
+
   void add_windows() {
     const Path& path = reference.path;
     double s = 0.0;
@@ -86,7 +128,11 @@ struct SteeringPlan::Builder {
         const double far = cusp ? config.margin_m : reach(segment, s, before, piece.curvature);
         add_window(segment, s - far, s + far);
       }
-      before = piece.curvature;
+      if (too_sharp(segment, s, piece)) {
+        const double far = reach(segment, s, piece.curvature, piece.end_curvature());
+        add_window(segment, s - far, s + piece.length + far);
+      }
+      before = piece.end_curvature();
       s += piece.length;
     }
   }
@@ -110,12 +156,14 @@ struct SteeringPlan::Builder {
     double begin_s = 0.0;
     for (const PathPiece& piece : reference.path.pieces()) {
       const double from = std::max(begin_s, window.begin_s);
+      const double driven = from - begin_s;  // of the piece
       begin_s += piece.length;
       const double length = std::min(begin_s, window.end_s) - from;
       if (length <= 1e-9) continue;
       const int count = static_cast<int>(std::ceil(length / config.step_m));
       for (int i = 0; i < count; ++i) {
-        cells.push_back({length / count, direction * piece.curvature, 0.0, RampState::Zero()});
+        const double curvature = piece.curvature_at(driven + length * (i + 0.5) / count);
+        cells.push_back({length / count, direction * curvature, 0.0, RampState::Zero()});
         borders.push_back(from + length * (i + 1) / count);
       }
     }

@@ -43,8 +43,8 @@ struct SteeringPlanConfig {
   }
 };
 
-/// Where the path's curvature steps so far that the steering is too slow for the leg's speed. In
-/// the order of their begins.
+/// Where the path's curvature steps so far, or a clothoid is so sharp, that the steering is too
+/// slow for the leg's speed. In the order of their begins.
 std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
                                       const SteeringPlanConfig& config);
 
@@ -57,7 +57,8 @@ struct PlannedSteering {
 
 /// The steering along a reference whose curvature steps, as a vehicle with a limited steering rate
 /// can follow it best: it turns the wheels before the step and after it so that the error is split,
-/// and knows what error remains. Away from steps it is the path's own curvature.
+/// and knows what error remains. Away from steps it is the path's own curvature, along clothoids
+/// too.
 class SteeringPlan {
  public:
   /// O(pieces + planned length / step). `speeds` belongs to the reference.

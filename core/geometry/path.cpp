@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kJointTolerance = 1e-6;  // [m, rad]
 
-Pose2 pose_on(const PathPiece& piece, double driven) {
-  return advance(piece.start, piece.curvature, sign(piece.gear) * driven);
-}
-
 /// Driven distance [m] of the point of the piece's whole line or circle that is nearest to `p_map`;
 /// on a circle in [0, one turn).
 double nearest_on_carrier(const PathPiece& piece, const Point2& p_map) {
@@ -27,29 +23,115 @@ double nearest_on_carrier(const PathPiece& piece, const Point2& p_map) {
 }
 
 Projection project_on(const PathPiece& piece, const Point2& p_map, double driven) {
-  const Pose2 foot = pose_on(piece, driven);
+  const Pose2 foot = piece.pose_at(driven);
   const Point2 offset = p_map - foot.position();
   return {driven, offset.dot(foot.left()), offset.norm()};
 }
 
+void keep_nearer(Projection& best, const Projection& candidate) {
+  if (candidate.distance < best.distance) best = candidate;
+}
+
+/// Nearest point of a clothoid: half the squared distance D from it to a point has a minimum where
+/// D' = 0 and D'' > 0.
+class ClothoidProjection {
+ public:
+  ClothoidProjection(const PathPiece& piece, const Point2& p_map) : piece_(piece), p_(p_map) {}
+
+  Projection nearest() {
+    const double most = std::max(std::abs(piece_.curvature), std::abs(piece_.end_curvature()));
+    const int count = 1 + static_cast<int>(std::min(most * piece_.length / kStretchTurn, 1e4));
+    At begin = at(0.0);
+    best_ = begin.projection;
+    for (int i = 1; i <= count; ++i) {
+      const At end = at(piece_.length * i / count);
+      keep_nearer(best_, end.projection);
+      search(begin, end, kMostHalvings);
+      begin = end;
+    }
+    return best_;
+  }
+
+ private:
+  static constexpr double kStretchTurn = 0.5;  // [rad]
+  static constexpr int kMostHalvings = 20;
+  static constexpr int kMostIterations = 60;  // of Newton's method, by halves at worst
+
+  struct At {
+    Projection projection;
+    double first = 0.0;   // D' [m]
+    double second = 0.0;  // D'' = 1 - curvature * lateral error
+  };
+  At at(double driven) const {
+    const Pose2 foot = piece_.pose_at(driven);
+    const Point2 offset = p_ - foot.position();
+    const double lateral = offset.dot(foot.left());
+    return {{driven, lateral, offset.norm()},
+            -sign(piece_.gear) * offset.dot(foot.heading()),
+            1.0 - piece_.curvature_at(driven) * lateral};
+  }
+
+  void search(const At& a, const At& b, int halvings) {
+    // A metre of the way brings the point nearer by at most a metre.
+    const double stretch = b.projection.s - a.projection.s;
+    if (a.projection.distance + b.projection.distance - stretch >= 2.0 * best_.distance) return;
+    if ((a.second > 0.0) != (b.second > 0.0) && halvings > 0) {
+      const At middle = at(a.projection.s + 0.5 * stretch);
+      keep_nearer(best_, middle.projection);
+      search(a, middle, halvings - 1);
+      search(middle, b, halvings - 1);
+    } else if (a.first < 0.0 && b.first > 0.0) {
+      keep_nearer(best_, foot_between(a.projection.s, b.projection.s).projection);
+    }
+  }
+
+  /// Newton's method on D', halving the bracket where it would leave it.
+  At foot_between(double low, double high) const {
+    At now = at(0.5 * (low + high));
+    for (int i = 0; i < kMostIterations && high - low > 1e-13 * (1.0 + high); ++i) {
+      const double s = now.projection.s;
+      (now.first < 0.0 ? low : high) = s;
+      const double wanted = s - now.first / now.second;
+      const bool inside = wanted > low && wanted < high;  // false for NaN
+      now = at(inside ? wanted : 0.5 * (low + high));
+      if (std::abs(now.projection.s - s) <= 1e-13 * (1.0 + s)) break;
+    }
+    return now;
+  }
+
+  PathPiece piece_;
+  Point2 p_;
+  Projection best_;
+};
+
+/// Nearest point of a straight or an arc.
+Projection project_on_arc(const PathPiece& piece, const Point2& p_map) {
+  const double driven = nearest_on_carrier(piece, p_map);
+  if (driven >= 0.0 && driven <= piece.length) return project_on(piece, p_map, driven);
+  Projection best = project_on(piece, p_map, 0.0);
+  keep_nearer(best, project_on(piece, p_map, piece.length));
+  return best;
+}
+
 /// Nearest point of the piece with driven distance in [low, high].
 Projection project_piece(PathPiece piece, const Point2& p_map, double low, double high) {
-  piece.start = pose_on(piece, low);
+  piece.start = piece.pose_at(low);
+  piece.curvature = piece.curvature_at(low);
   piece.length = high - low;
-  const double driven = nearest_on_carrier(piece, p_map);
-  Projection best;
-  if (driven >= 0.0 && driven <= piece.length) {
-    best = project_on(piece, p_map, driven);
-  } else {
-    best = project_on(piece, p_map, 0.0);
-    const Projection at_end = project_on(piece, p_map, piece.length);
-    if (at_end.distance < best.distance) best = at_end;
-  }
+  Projection best = piece.sharpness == 0.0 ? project_on_arc(piece, p_map)
+                                           : ClothoidProjection(piece, p_map).nearest();
   best.s += low;
   return best;
 }
 
 }  // namespace
+
+PathPiece turned_round(const PathPiece& piece) {
+  PathPiece back = piece;
+  back.start = reversed(piece.pose_at(piece.length));
+  back.curvature = -piece.end_curvature();
+  return back;  // the sharpness keeps its sign: both the curvature and the way are reversed
+}
 
 void Path::append(const PathPiece& piece) {
   HEADLAND_CHECK(piece.length > 0.0 && std::isfinite(piece.length), "a piece of no length");
@@ -79,6 +161,11 @@ void Path::append(const Curve& curve, const Pose2& from, int leg) {
   }
 }
 
+void Path::append(const Clothoid& clothoid, int leg) {
+  append(PathPiece{clothoid.start, clothoid.curvature, clothoid.length, Gear::kForward, leg,
+                   clothoid.sharpness});
+}
+
 void Path::append_straight(const Pose2& from, double length, int leg) {
   if (length > 0.0) append(PathPiece{from, 0.0, length, Gear::kForward, leg});
 }
@@ -100,7 +187,7 @@ Pose2 Path::start_pose() const {
 
 Pose2 Path::end_pose() const {
   HEADLAND_CHECK(!empty(), "the end of an empty path");
-  return pose_on(pieces_.back(), pieces_.back().length);
+  return pieces_.back().pose_at(pieces_.back().length);
 }
 
 PathSample Path::at(double s) const {
@@ -116,8 +203,9 @@ PathSample Path::at(double s) const {
   const int segment = std::min(static_cast<int>(next_segment - segments_.begin()),
                                static_cast<int>(segments_.size()) - 1);
   const PathPiece& piece = pieces_[i];
+  const double driven = clamped - begin_s;
   return {
-      pose_on(piece, clamped - begin_s), clamped, piece.curvature, piece.gear, segment, piece.leg};
+      piece.pose_at(driven), clamped, piece.curvature_at(driven), piece.gear, segment, piece.leg};
 }
 
 std::vector<PathSample> Path::sample(double spacing) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/config/visit.hpp"
+#include "core/geometry/clothoid.hpp"
 #include "core/geometry/curve.hpp"
 
 namespace headland {
@@ -15,14 +16,25 @@ enum class Gear : std::int8_t { kForward = 1, kReverse = -1 };
 
 constexpr double sign(Gear gear) { return gear == Gear::kForward ? 1.0 : -1.0; }
 
-/// One straight or circular piece of a path, exact.
+/// One piece of a path, exact: a straight, an arc or a clothoid.
 struct PathPiece {
   Pose2 start;  ///< of the vehicle's base in `map`; its heading, not its direction of travel
-  double curvature = 0.0;  ///< [1/m] of the steering, positive left, in both gears
+  double curvature = 0.0;  ///< [1/m] of the steering at the start, positive left, in both gears
   double length = 0.0;     ///< driven distance [m], > 0
   Gear gear = Gear::kForward;
-  int leg = 0;  ///< the plan's leg (row, turn, transit) this piece belongs to
+  int leg = 0;             ///< the plan's leg (row, turn, transit) this piece belongs to
+  double sharpness = 0.0;  ///< change of curvature per driven metre [1/m2]; 0: straight or arc
+
+  /// After `driven` [m] of it.
+  Pose2 pose_at(double driven) const {
+    return advance(start, curvature, sign(gear) * sharpness, sign(gear) * driven);
+  }
+  double curvature_at(double driven) const { return curvature + sharpness * driven; }  ///< [1/m]
+  double end_curvature() const { return curvature_at(length); }                        ///< [1/m]
 };
+
+/// The same ground driven the other way in the same gear, the vehicle looking back.
+PathPiece turned_round(const PathPiece& piece);
 
 /// A point of a path, with all a controller needs to know of it.
 struct PathSample {
@@ -56,6 +68,8 @@ class Path {
   void append(const PathPiece& piece);
   /// Appends the pieces of a steering curve that starts at `from`.
   void append(const Curve& curve, const Pose2& from, int leg);
+  /// Appends a clothoid.
+  void append(const Clothoid& clothoid, int leg);
   /// Appends a forward straight line of `length` [m] from `from`; nothing if it is not positive.
   void append_straight(const Pose2& from, double length, int leg);
   /// Appends all of another path, its leg numbers raised by `leg_offset`.
@@ -73,7 +87,8 @@ class Path {
   PathSample at(double s) const;
   /// Samples at most `spacing` [m] apart; the ends of all pieces are among them.
   std::vector<PathSample> sample(double spacing) const;
-  /// The nearest point with s in [from_s, to_s]; exact on lines and arcs. O(pieces in the window).
+  /// The nearest point with s in [from_s, to_s]; exact on lines and arcs, to rounding on
+  /// clothoids. O(pieces in the window).
   Projection project(const Point2& p_map, double from_s, double to_s) const;
   /// Driven distance [m] at which leg number `leg` begins and ends; {0, 0} if the path has no such
   /// leg.

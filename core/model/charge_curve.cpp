@@ -3,37 +3,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/error.hpp"
 
 namespace headland {
 namespace {
 
-// Slope of the power below which it counts as constant [W per unit of soc].
-constexpr double kFlat = 1e-9;
+// Power changes linearly in soc: d(soc)/dt = (power + slope (soc - soc0)) / capacity, whose
+// solution is an exponential in time, and a logarithm the other way round. Both forms below keep
+// their digits as the slope vanishes.
+
+// log(1 + x) / x
+double log1p_ratio(double x) { return std::abs(x) < 1e-9 ? 1.0 - 0.5 * x : std::log1p(x) / x; }
+// (e^x - 1) / x
+double expm1_ratio(double x) { return std::abs(x) < 1e-9 ? 1.0 + 0.5 * x : std::expm1(x) / x; }
+
+// The curve from some soc up to its next point.
+struct Stretch {
+  double end_soc = std::numeric_limits<double>::infinity();
+  double power = 0.0;  // where it begins [W]
+  double slope = 0.0;  // [W per unit of soc]
+};
+
+Stretch stretch_from(const std::vector<ChargePoint>& points, double soc) {
+  const auto next = std::upper_bound(points.begin(), points.end(), soc,
+                                     [](double s, const ChargePoint& p) { return s < p.soc; });
+  if (next == points.end()) return {.power = points.back().power_w};
+  if (next == points.begin()) return {next->soc, next->power_w, 0.0};
+  const ChargePoint& last = *(next - 1);
+  const double slope = (next->power_w - last.power_w) / (next->soc - last.soc);
+  return {next->soc, last.power_w + slope * (soc - last.soc), slope};
+}
 
 }  // namespace
 
 ChargeCurve::ChargeCurve(std::vector<ChargePoint> points) : points_(std::move(points)) {
   HEADLAND_CHECK(!points_.empty(), "a charging curve without points");
-  for (std::size_t i = 1; i < points_.size(); ++i) {
-    HEADLAND_CHECK(points_[i].soc >= points_[i - 1].soc, "charging curve: points out of order");
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    HEADLAND_CHECK(points_[i].power_w > 0.0, "charging curve: no power");
+    HEADLAND_CHECK(i == 0 || points_[i].soc > points_[i - 1].soc,
+                   "charging curve: points out of order");
   }
 }
 
 ChargeCurve ChargeCurve::cc_cv(double power_w, double cv_soc, double end_ratio) {
   if (cv_soc >= 1.0) return ChargeCurve(power_w);
-  return ChargeCurve({{0.0, power_w}, {cv_soc, power_w}, {1.0, end_ratio * power_w}});
+  return ChargeCurve({{cv_soc, power_w}, {1.0, end_ratio * power_w}});
 }
 
-double ChargeCurve::power(double soc) const {
-  const auto above = std::upper_bound(points_.begin(), points_.end(), soc,
-                                      [](double s, const ChargePoint& p) { return s < p.soc; });
-  if (above == points_.begin()) return points_.front().power_w;
-  if (above == points_.end()) return points_.back().power_w;
-  const ChargePoint& a = *(above - 1);
-  return a.power_w + (above->power_w - a.power_w) * (soc - a.soc) / (above->soc - a.soc);
-}
+double ChargeCurve::power(double soc) const { return stretch_from(points_, soc).power; }
 
 double ChargeCurve::max_power() const {
   double most = 0.0;
@@ -45,15 +64,10 @@ double ChargeCurve::time(double from_soc, double to_soc, double capacity) const 
   double total = 0.0;
   double soc = from_soc;
   while (soc < to_soc) {
-    const auto above = std::upper_bound(points_.begin(), points_.end(), soc,
-                                        [](double s, const ChargePoint& p) { return s < p.soc; });
-    const double end = above == points_.end() ? to_soc : std::min(to_soc, above->soc);
-    const double p0 = power(soc);
-    const double p1 = above == points_.end() || above == points_.begin()
-                          ? p0
-                          : p0 + (above->power_w - p0) * (end - soc) / (above->soc - soc);
-    const double slope = (p1 - p0) / (end - soc);
-    total += std::abs(slope) < kFlat ? (end - soc) / p0 : std::log(p1 / p0) / slope;
+    const Stretch stretch = stretch_from(points_, soc);
+    const double end = std::min(to_soc, stretch.end_soc);
+    const double flat = (end - soc) / stretch.power;  // at constant power
+    total += flat * log1p_ratio(stretch.slope * flat);
     soc = end;
   }
   return total * capacity;
@@ -63,17 +77,13 @@ double ChargeCurve::soc_after(double from_soc, double time, double capacity) con
   double soc = from_soc;
   double left = time / capacity;
   while (left > 0.0 && soc < 1.0) {
-    const auto above = std::upper_bound(points_.begin(), points_.end(), soc,
-                                        [](double s, const ChargePoint& p) { return s < p.soc; });
-    const double end = above == points_.end() ? 1.0 : std::min(1.0, above->soc);
-    const double p0 = power(soc);
-    const double p1 = above == points_.end() || above == points_.begin()
-                          ? p0
-                          : p0 + (above->power_w - p0) * (end - soc) / (above->soc - soc);
-    const double slope = (p1 - p0) / (end - soc);
-    const bool flat = std::abs(slope) < kFlat;
-    const double needed = flat ? (end - soc) / p0 : std::log(p1 / p0) / slope;
-    if (needed > left) return soc + (flat ? p0 * left : p0 / slope * std::expm1(slope * left));
+    const Stretch stretch = stretch_from(points_, soc);
+    const double end = std::min(1.0, stretch.end_soc);
+    const double flat = (end - soc) / stretch.power;
+    const double needed = flat * log1p_ratio(stretch.slope * flat);
+    if (needed > left) {
+      return std::min(end, soc + stretch.power * left * expm1_ratio(stretch.slope * left));
+    }
     left -= needed;
     soc = end;
   }
@@ -81,23 +91,24 @@ double ChargeCurve::soc_after(double from_soc, double time, double capacity) con
 }
 
 ChargeCurve lower(const ChargeCurve& a, const ChargeCurve& b) {
-  std::vector<double> socs{0.0, 1.0};
+  std::vector<double> socs;
   for (const ChargePoint& p : a.points_) socs.push_back(p.soc);
   for (const ChargePoint& p : b.points_) socs.push_back(p.soc);
   std::sort(socs.begin(), socs.end());
   socs.erase(std::unique(socs.begin(), socs.end()), socs.end());
   std::vector<ChargePoint> points;
   for (std::size_t i = 0; i < socs.size(); ++i) {
+    const double soc = socs[i];
     if (i > 0) {
       // Where the two cross between their points.
       const double d0 = a.power(socs[i - 1]) - b.power(socs[i - 1]);
-      const double d1 = a.power(socs[i]) - b.power(socs[i]);
-      if (d0 * d1 < 0.0) {
-        const double soc = socs[i - 1] + (socs[i] - socs[i - 1]) * d0 / (d0 - d1);
-        points.push_back({soc, a.power(soc)});
+      const double d1 = a.power(soc) - b.power(soc);
+      const double crossing = socs[i - 1] + (soc - socs[i - 1]) * d0 / (d0 - d1);
+      if (d0 * d1 < 0.0 && crossing > socs[i - 1] && crossing < soc) {
+        points.push_back({crossing, a.power(crossing)});
       }
     }
-    points.push_back({socs[i], std::min(a.power(socs[i]), b.power(socs[i]))});
+    points.push_back({soc, std::min(a.power(soc), b.power(soc))});
   }
   return ChargeCurve(std::move(points));
 }

@@ -24,7 +24,7 @@ class ChargeCurve {
  public:
   /// Constant power [W].
   explicit ChargeCurve(double power_w = 1.0) : points_{{0.0, power_w}, {1.0, power_w}} {}
-  /// Points by rising soc; at least one. (Checked: HEADLAND_CHECK.)
+  /// Points by rising soc, their power above zero; at least one (checked).
   explicit ChargeCurve(std::vector<ChargePoint> points);
   /// Constant power up to `cv_soc`, then falling linearly in soc to `end_ratio` of it at full
   /// (constant current, constant voltage).

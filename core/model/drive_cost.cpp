@@ -25,7 +25,7 @@ DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cu
   step.duration_s = length / speed;
   step.speed_mps = speed;
   step.speed_before_mps = speed;
-  step.soil = soil;
+  step.soil = soil_resistance(soil);
   step.working = kind == LegKind::kRow;
   const double standing = cusps * vehicle.gear_change_s;
   const double energy = step_energy(vehicle.energy, step) + vehicle.energy.base_power_w * standing;

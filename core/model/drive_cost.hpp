@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -12,7 +13,22 @@
 namespace headland {
 
 enum class LegKind { kRow, kTurn, kTransit, kTask, kCharge };
-enum class Objective { kEnergy, kTime, kLength };
+enum class Objective { kEnergy, kTime, kLength, kWeighted };
+
+/// What is minimised, as a weighted sum.
+struct CostWeights {
+  double per_j = 1.0;  ///< of energy [1/J]
+  double per_s = 0.0;  ///< of time [1/s]
+  double per_m = 0.0;  ///< of length [1/m]
+
+  CostWeights() = default;
+  CostWeights(double j, double s, double m) : per_j(j), per_s(s), per_m(m) {}
+  /// Energy, time or length alone. Converts on purpose.
+  CostWeights(Objective objective)
+      : per_j(objective == Objective::kEnergy ? 1.0 : 0.0),
+        per_s(objective == Objective::kTime ? 1.0 : 0.0),
+        per_m(objective == Objective::kLength ? 1.0 : 0.0) {}
+};
 
 /// What driving something costs.
 struct DriveCost {
@@ -30,11 +46,10 @@ struct DriveCost {
     return *this;
   }
   friend DriveCost operator+(DriveCost a, const DriveCost& b) { return a += b; }
-  /// The one number that is minimised: [J], [s] or [m].
-  double value(Objective objective) const {
-    return objective == Objective::kEnergy ? energy_j
-           : objective == Objective::kTime ? duration_s
-                                           : length_m;
+  /// The one number that is minimised; infinite where there is no way.
+  double value(const CostWeights& weights) const {
+    if (std::isinf(length_m)) return length_m;
+    return weights.per_j * energy_j + weights.per_s * duration_s + weights.per_m * length_m;
   }
 };
 
@@ -62,5 +77,6 @@ struct headland::config::EnumNames<headland::Objective> {
   static constexpr std::pair<headland::Objective, std::string_view> values[] = {
       {headland::Objective::kEnergy, "energy"},
       {headland::Objective::kTime, "time"},
-      {headland::Objective::kLength, "length"}};
+      {headland::Objective::kLength, "length"},
+      {headland::Objective::kWeighted, "weighted"}};
 };

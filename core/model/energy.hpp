@@ -6,6 +6,8 @@
 
 namespace headland {
 
+inline constexpr double kGravity = 9.80665;  ///< [m/s2]
+
 /// What driving and working draws from the battery. Paths are plan views: lengths are horizontal,
 /// and so rolling costs m g c per horizontal metre and climbing m g dz, whatever the slope.
 struct EnergyModel {
@@ -14,7 +16,7 @@ struct EnergyModel {
   double rotating_mass_kg = 0.0;
   double rolling_factor_ratio = 1.0;
   double drag_area_m2 = 0.0;
-  double turn_loss_mps = 0.0;
+  double turn_loss_ratio = 0.0;
   double drive_efficiency_ratio = 0.8;
   double recuperation_efficiency_ratio = 0.0;
   double base_power_w = 300.0;
@@ -33,8 +35,8 @@ struct EnergyModel {
       "Rolling resistance of these wheels or tracks over the soil's table value");
     v("drag_area_m2", drag_area_m2, config::Range{0.0, 100.0},
       "Drag coefficient x frontal area [m2]");
-    v("turn_loss_mps", turn_loss_mps, config::Range{0.0, 10.0},
-      "Power lost in curves over the centripetal force [m/s]");
+    v("turn_loss_ratio", turn_loss_ratio, config::Range{0.0, 10.0},
+      "Resistance in curves over the centripetal force");
     v("drive_efficiency_ratio", drive_efficiency_ratio, config::Range{0.05, 1.0},
       "Work at the wheels over energy from the battery");
     v("recuperation_efficiency_ratio", recuperation_efficiency_ratio, config::kFraction,
@@ -56,14 +58,18 @@ struct DriveStep {
   double curvature_1pm = 0.0;
   double speed_mps = 0.0;         ///< at the end of the step
   double speed_before_mps = 0.0;  ///< at its beginning
-  SoilClass soil = SoilClass::kFirm;
+  SoilResistance soil = soil_resistance(SoilClass::kFirm);
   bool working = false;  ///< implement down
 };
 
-/// Energy drawn from the battery [J] in a step; negative where more is recuperated than drawn.
-/// (SUMO / Kurczveil, Lopez, Schnieder 2014, with slip, implement and base load added.) At constant
-/// speed no step is cheaper than recuperation_efficiency * m g * rise, so that drive energies plus
-/// that potential are never negative.
+/// Energy drawn from the battery [J] in a step; negative where more is recuperated than drawn:
+///   work = m g rise + (m + m_rot) (v^2 - v_before^2) / 2 + c_roll m g ds + rho/2 c_w A v^2 ds
+///        + c_turn m v^2 |kappa| ds + draft ds
+///   drawn = work / ((1 - slip) eta_drive), or work eta_recuperation where work < 0; + loads dt
+///   slip = slip_per_traction work / (m g ds), at most 0.5
+/// Work is that of SUMO 1.15 (Kurczveil, Lopez, Schnieder 2014; tested side by side); slip,
+/// implement and loads beside the drive are ours. At constant speed no step is cheaper than
+/// eta_recuperation m g rise, so that drive energies plus that potential are never negative.
 double step_energy(const EnergyModel& model, const DriveStep& step);
 
 }  // namespace headland

@@ -69,4 +69,24 @@ std::vector<Polygon> drivable_area(const Farm& farm) {
   return subtract(drivable, forbidden);
 }
 
+MapBox extent(const Farm& farm) {
+  MapBox box;
+  const auto add = [&box](const Polyline& points, double around) {
+    for (const Point2& p : points) {
+      box.extend(p - Point2(around, around));
+      box.extend(p + Point2(around, around));
+    }
+  };
+  for (const RowParcel& p : farm.row_parcels) {
+    add(p.boundary.outer, p.headland_outside_m);
+    for (const Row& row : p.rows) add(row.line, 0.0);
+  }
+  for (const FreeParcel& p : farm.free_parcels) add(p.boundary.outer, 0.0);
+  for (const Road& road : farm.roads) add(road.line, 0.5 * road.width_m);
+  for (const Gate& gate : farm.gates) add({gate.position}, 0.5 * gate.width_m);
+  for (const Poi& poi : farm.pois) add({poi.pose.position()}, kStandingRadius);
+  for (const Charger& charger : farm.chargers) add({charger.pose.position()}, kStandingRadius);
+  return box;
+}
+
 }  // namespace headland

@@ -114,4 +114,7 @@ struct Farm {
 /// (discs of their width), and 4 m around POIs and chargers; without keep-outs.
 std::vector<Polygon> drivable_area(const Farm& farm);
 
+/// The rectangle around all of that; empty for an empty farm.
+MapBox extent(const Farm& farm);
+
 }  // namespace headland

@@ -28,8 +28,8 @@ constexpr Range kHeadingDeg{-360.0, 360.0};
 constexpr Range kHeadlandM{0.0, 1000.0};
 constexpr Range kWidthM{0.1, 1000.0};
 
-const std::vector<std::string> kKinds{"row_parcel", "row", "free_parcel", "road",   "keep_out",
-                                      "gate",       "poi", "charger",     "terrain"};
+const std::vector<std::string> kKinds{"row_parcel", "row", "free_parcel", "road",    "keep_out",
+                                      "gate",       "poi", "charger",     "terrain", "soil"};
 
 // Puts features together to a farm. What one feature alone can tell is checked when it is added,
 // the rest in finish().
@@ -64,6 +64,7 @@ class FarmBuilder {
   Result<void> add_poi(const Feature& feature, Properties& properties);
   Result<void> add_charger(const Feature& feature, Properties& properties);
   Result<void> add_terrain(const Feature& feature, Properties& properties);
+  Result<void> add_soil(const Feature& feature, Properties& properties);
 
   Result<void> take_id(const std::string& id, const Location& where);
   template <class T>
@@ -97,7 +98,8 @@ Result<void> FarmBuilder::add(const Feature& feature) {
                                                     {"gate", &FarmBuilder::add_gate},
                                                     {"poi", &FarmBuilder::add_poi},
                                                     {"charger", &FarmBuilder::add_charger},
-                                                    {"terrain", &FarmBuilder::add_terrain}};
+                                                    {"terrain", &FarmBuilder::add_terrain},
+                                                    {"soil", &FarmBuilder::add_soil}};
   const Location where = below(feature.where, "properties");
   Properties properties(feature.properties, where);
   const nlohmann::json kind = properties.raw("kind");
@@ -214,8 +216,7 @@ Result<void> FarmBuilder::add_poi(const Feature& feature, Properties& properties
 Result<void> FarmBuilder::add_charger(const Feature& feature, Properties& properties) {
   Charger charger;
   charger.id = properties.text("id", Need::kRequired);
-  charger.curve =
-      ChargeCurve(properties.number("power_w", {1.0, 1e7}, Need::kOptional, 10000.0));
+  charger.curve = properties.charge_curve("power_w", charger.curve);
   charger.slots = properties.whole("slots", Range{1.0, 1000.0}, Need::kOptional, charger.slots);
   charger.pose.yaw =
       deg_to_rad(properties.number("heading_deg", kHeadingDeg, Need::kOptional, 0.0));
@@ -229,11 +230,43 @@ Result<void> FarmBuilder::add_charger(const Feature& feature, Properties& proper
   return {};
 }
 
+// Either a file or generated hills.
 Result<void> FarmBuilder::add_terrain(const Feature& feature, Properties& properties) {
-  const std::string path = properties.text("path", Need::kRequired);
+  const bool generated = properties.has("hills_seed");
+  const std::string path = properties.text("path", generated ? Need::kOptional : Need::kRequired);
+  HillSpec hills;
+  hills.seed =
+      static_cast<std::uint64_t>(properties.whole("hills_seed", {0.0, 2e9}, Need::kOptional, 1));
+  if (generated) {  // else these are unknown keys
+    hills.relief_m =
+        properties.number("hills_relief_m", {0.0, 3000.0}, Need::kOptional, hills.relief_m);
+    hills.wavelength_m =
+        properties.number("hills_wavelength_m", {1.0, 1e5}, Need::kOptional, hills.wavelength_m);
+    hills.cell_m = properties.number("cell_m", {0.1, 1000.0}, Need::kOptional, hills.cell_m);
+  }
   if (auto ok = properties.finish(); !ok) return ok;
-  const auto folder = std::filesystem::path(feature.where.file).parent_path();
-  farm_.terrain_files.push_back((folder / path).lexically_normal().string());
+  if (!generated) {
+    const auto folder = std::filesystem::path(feature.where.file).parent_path();
+    farm_.terrain_files.push_back((folder / path).lexically_normal().string());
+    return {};
+  }
+  if (!path.empty() || farm_.hills) {
+    return fail(ErrorCode::kBadGeometry, "a second terrain",
+                "a terrain has a path or hills, and a farm has hills once",
+                below(feature.where, "properties.hills_seed"));
+  }
+  farm_.hills = hills;
+  return {};
+}
+
+Result<void> FarmBuilder::add_soil(const Feature& feature, Properties& properties) {
+  const std::string id = properties.text("id", Need::kOptional);
+  const auto soil = properties.choice("class", SoilClass::kFirm);
+  if (auto ok = properties.finish(); !ok) return ok;
+  if (auto ok = take_id(id, feature.where); !ok) return ok;
+  auto boundary = internal::polygon_of(feature, farm_.frame);
+  if (!boundary) return tl::unexpected<Error>(boundary.error());
+  farm_.soils.push_back({id, soil, std::move(*boundary)});
   return {};
 }
 
@@ -327,6 +360,7 @@ Result<Farm> FarmBuilder::finish(const std::string& name) {
   name_the_nameless(farm_.roads, "road");
   name_the_nameless(farm_.keep_outs, "keep_out");
   name_the_nameless(farm_.gates, "gate");
+  name_the_nameless(farm_.soils, "soil");
   return std::move(farm_);
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -73,6 +74,37 @@ void write_row_parcel(const RowParcel& p, Writer& out) {
   }
 }
 
+// A number for constant power, or else a list.
+Json power(const ChargeCurve& curve) {
+  const auto& points = curve.points();
+  const bool constant = std::all_of(points.begin(), points.end(), [&](const ChargePoint& p) {
+    return p.power_w == points.front().power_w;
+  });
+  if (constant) return points.front().power_w;
+  Json list = Json::array();
+  for (const ChargePoint& p : points) list.push_back({p.soc, p.power_w});
+  return list;
+}
+
+void write_ground(const Farm& farm, Writer& out) {
+  for (const std::string& path : farm.terrain_files) {
+    out.feature({{"kind", "terrain"}, {"path", path}}, nullptr);
+  }
+  if (farm.hills) {
+    const HillSpec& h = *farm.hills;
+    out.feature({{"kind", "terrain"},
+                 {"hills_seed", h.seed},
+                 {"hills_relief_m", h.relief_m},
+                 {"hills_wavelength_m", h.wavelength_m},
+                 {"cell_m", h.cell_m}},
+                nullptr);
+  }
+  for (const SoilArea& s : farm.soils) {
+    out.feature({{"kind", "soil"}, {"id", s.id}, {"class", config::enum_name(s.soil)}},
+                out.polygon(s.boundary));
+  }
+}
+
 void write_places(const Farm& farm, Writer& out) {
   for (const Gate& g : farm.gates) {
     out.feature({{"kind", "gate"}, {"id", g.id}, {"width_m", g.width_m}}, out.point(g.position));
@@ -85,7 +117,7 @@ void write_places(const Farm& farm, Writer& out) {
   for (const Charger& c : farm.chargers) {
     out.feature({{"kind", "charger"},
                  {"id", c.id},
-                 {"power_w", c.curve.max_power()},
+                 {"power_w", power(c.curve)},
                  {"slots", c.slots},
                  {"heading_deg", heading_deg(c.pose.yaw)}},
                 out.point(c.pose.position()));
@@ -107,9 +139,7 @@ std::string to_geojson(const Farm& farm) {
     out.feature({{"kind", "keep_out"}, {"id", k.id}}, out.polygon(k.boundary));
   }
   write_places(farm, out);
-  for (const std::string& path : farm.terrain_files) {
-    out.feature({{"kind", "terrain"}, {"path", path}}, nullptr);
-  }
+  write_ground(farm, out);
   const LatLon origin = farm.frame.origin();
   const Json header{
       {"version", 1}, {"name", farm.name}, {"origin", {origin.lon_deg, origin.lat_deg}}};

@@ -2,6 +2,7 @@
 #include "global_planner/coverage/transitions.hpp"
 
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -32,21 +33,22 @@ const char* compass(double yaw) {
   return names[static_cast<std::size_t>(((k % 8) + 8) % 8)];
 }
 
-enum class WayType : std::int8_t { kNone, kTurn, kLanes, kThroughRow };
+enum class WayType : std::int8_t { kNone, kTurn, kLanes, kThroughRow, kGiven };
 
 // How one site is reached from another.
 struct Way {
-  double length = kInfinity;  // [m]
-  int index = -1;  // kTurn: of the turn; kThroughRow: the end of the row by which it is entered
-  std::int16_t cusps = 0;
+  DriveCost cost;
+  int index = -1;  // kTurn: of the turn; kThroughRow: the end of the row by which it is entered;
+                   // kGiven: of the path
   WayType type = WayType::kNone;
 };
 
 }  // namespace
 
 struct Transitions::Impl {
-  Impl(const Farm& farm, const std::vector<RowRef>& rows_in, const std::vector<Site>& stops,
-       const Vehicle& vehicle_in, const TransitionOptions& options_in, const RowBodies& bodies);
+  Impl(const Farm& farm, const Ground& ground, const std::vector<RowRef>& rows_in,
+       const std::vector<Site>& stops, const Vehicle& vehicle_in,
+       const TransitionOptions& options_in, const RowBodies& bodies);
 
   // Each site has a port where it is left and one where it is entered.
   int ports() const { return static_cast<int>(ports_.size()); }
@@ -70,6 +72,7 @@ struct Transitions::Impl {
   void find_ways_through_rows();
   std::optional<Error> shut_in_row() const;
   LegKind kind(const Way& w, int from, int to) const;
+  double value(const DriveCost& cost) const { return cost.value(options.objective); }
   Path lane_path(int from, int to) const;
   Path path(int from, int to) const;
 
@@ -80,8 +83,7 @@ struct Transitions::Impl {
   int ends = 0;  // of rows
   double radius;
   double spacing;
-  CostRate turn_rate;
-  CostRate transit_rate;
+  WayPricer pricer;
   FreeSpace space;
   std::vector<Port> ports_;
   std::vector<Turn> turns;
@@ -89,9 +91,11 @@ struct Transitions::Impl {
   std::vector<std::vector<Connection>> connections;  // of ports
   std::vector<Path> row_paths;                       // from first to last end
   std::vector<Way> ways;
+  std::vector<Path> given;
+  std::atomic<bool> steep_turns = false;  // some were left out
 };
 
-Transitions::Impl::Impl(const Farm& farm, const std::vector<RowRef>& row_refs,
+Transitions::Impl::Impl(const Farm& farm, const Ground& ground, const std::vector<RowRef>& row_refs,
                         const std::vector<Site>& stops, const Vehicle& vehicle_in,
                         const TransitionOptions& options_in, const RowBodies& bodies)
     : vehicle(vehicle_in),
@@ -99,8 +103,7 @@ Transitions::Impl::Impl(const Farm& farm, const std::vector<RowRef>& row_refs,
       ends(2 * static_cast<int>(row_refs.size())),
       radius(vehicle_in.turning_radius()),
       spacing(bodies.widest),
-      turn_rate(cost_rate(vehicle_in, LegKind::kTurn, options_in.objective)),
-      transit_rate(cost_rate(vehicle_in, LegKind::kTransit, options_in.objective)),
+      pricer(vehicle_in, ground, options_in.objective),
       space(drivable_area(farm), bodies.bodies, vehicle_in.footprint, options_in.margin_m,
             bodies.margin) {
   for (const RowRef ref : row_refs) {
@@ -160,8 +163,10 @@ std::vector<int> Transitions::Impl::turn_partners(int from) const {
 
 void Transitions::Impl::find_turns() {
   struct Found {
+    int from;
     int to;
     Turn turn;
+    DriveCost cost;
   };
   std::vector<std::vector<Found>> found(sites.size());
   const bool reverses = vehicle.can_reverse;
@@ -175,20 +180,23 @@ void Transitions::Impl::find_turns() {
     for (const int to : turn_partners(from)) {
       const bool rows_both = from < ends && to < ends;
       if (alike && rows_both && to < from) continue;
-      const auto turn =
-          search.find(a, port(in_port(to)).end, kinds, rows_both ? turn_rate : transit_rate);
-      if (turn) found[static_cast<std::size_t>(from)].push_back({to, *turn});
+      const LegKind kind = rows_both ? LegKind::kTurn : LegKind::kTransit;
+      const auto turn = search.find(a, port(in_port(to)).end, kinds, pricer.flat_rate(kind));
+      if (!turn) continue;
+      const auto add = [&](int begin, int end, const Turn& way) {
+        const Pose2& out = sites[static_cast<std::size_t>(begin)].depart;
+        const std::optional<DriveCost> cost = pricer.price(turn_path(out, way), kind, way.cusps());
+        if (!cost) steep_turns = true;
+        if (cost) found[static_cast<std::size_t>(from)].push_back({begin, end, way, *cost});
+      };
+      add(from, to, *turn);
+      if (alike && rows_both) add(to, from, mirrored(*turn));
     }
   });
-  const auto enter = [this](int from, int to, const Turn& turn) {
-    way(from, to) = {turn.length(), static_cast<int>(turns.size()),
-                     static_cast<std::int16_t>(turn.cusps()), WayType::kTurn};
-    turns.push_back(turn);
-  };
-  for (int from = 0; from < static_cast<int>(sites.size()); ++from) {
-    for (const Found& f : found[static_cast<std::size_t>(from)]) {
-      enter(from, f.to, f.turn);
-      if (alike && from < ends && f.to < ends) enter(f.to, from, mirrored(f.turn));
+  for (const std::vector<Found>& of_site : found) {
+    for (const Found& f : of_site) {
+      way(f.from, f.to) = {f.cost, static_cast<int>(turns.size()), WayType::kTurn};
+      turns.push_back(f.turn);
     }
   }
 }
@@ -198,7 +206,7 @@ void Transitions::Impl::join_lanes(const Farm& farm, const std::vector<Polygon>&
   const double clearance = 0.5 * vehicle.footprint.width_m + options.margin_m + kLaneSlack;
   lanes = std::make_unique<LaneGraph>(
       space, lane_poses(farm, drivable, bodies.bodies, space, clearance, radius), radius,
-      vehicle.can_reverse, transit_rate);
+      vehicle.can_reverse, pricer);
   connections.resize(ports_.size());
   parallel_for(ports(), [this](int p) {
     if (port(p).end.free_run < 0.0) return;
@@ -260,17 +268,22 @@ void Transitions::Impl::offer_lane_way(int from, int to, const WayCost& found) {
   Way& w = way(from, to);
   if (found.cost == kInfinity) return;
   // On equal terms: a lane way must not win over a turn merely because lanes are driven faster.
-  const CostRate& rate = kind(w, from, to) == LegKind::kTurn ? turn_rate : transit_rate;
-  if (w.type != WayType::kNone &&
-      rate.of(w.length, w.cusps) <= rate.of(found.length, found.cusps)) {
-    return;
-  }
-  w = {found.length, -1, static_cast<std::int16_t>(found.cusps), WayType::kLanes};
+  const CostRate transit = pricer.flat_rate(LegKind::kTransit);
+  const CostRate same = pricer.flat_rate(kind(w, from, to));
+  const double length = found.drive.length_m;
+  const double handicap = same.of(length, found.cusps) / transit.of(length, found.cusps);
+  if (w.type != WayType::kNone && value(w.cost) <= handicap * found.cost) return;
+  w = {found.drive, -1, WayType::kLanes};
 }
 
 // Leave by a turn into another row, drive through it, and turn into the wanted one at its far end:
 // how opposite ends are joined where no lane goes around.
 void Transitions::Impl::find_ways_through_rows() {
+  std::vector<std::optional<DriveCost>> through_row;  // entered by that end
+  for (int e = 0; e < ends; ++e) {
+    const Row& row = rows[static_cast<std::size_t>(e / 2)];
+    through_row.push_back(pricer.price(row_path(row, e % 2, radius), LegKind::kTransit));
+  }
   std::vector<std::vector<int>> turns_from(static_cast<std::size_t>(ends));
   for (int a = 0; a < ends; ++a) {
     for (int b = 0; b < ends; ++b) {
@@ -280,19 +293,15 @@ void Transitions::Impl::find_ways_through_rows() {
   for (int a = 0; a < ends; ++a) {
     for (const int in : turns_from[static_cast<std::size_t>(a)]) {
       const Way to_row = way(a, in);
-      const double through = row_paths[static_cast<std::size_t>(in / 2)].length();
+      const std::optional<DriveCost>& through = through_row[static_cast<std::size_t>(in)];
+      if (!through) continue;
       for (const int b : turns_from[static_cast<std::size_t>(in ^ 1)]) {
         if (b / 2 == a / 2) continue;
-        const Way from_row = way(in ^ 1, b);
-        const double length = to_row.length + through + from_row.length;
-        const int cusps = to_row.cusps + from_row.cusps;
+        const DriveCost cost = to_row.cost + *through + way(in ^ 1, b).cost;
         Way& w = way(a, b);
         if (w.type == WayType::kTurn) continue;
-        if (w.type != WayType::kNone &&
-            transit_rate.of(w.length, w.cusps) <= transit_rate.of(length, cusps)) {
-          continue;
-        }
-        w = {length, in, static_cast<std::int16_t>(cusps), WayType::kThroughRow};
+        if (w.type != WayType::kNone && value(w.cost) <= value(cost)) continue;
+        w = {cost, in, WayType::kThroughRow};
       }
     }
   }
@@ -313,6 +322,16 @@ std::optional<Error> Transitions::Impl::shut_in_row() const {
     if (!others || (left && entered)) continue;
     const Pose2& out = sites[static_cast<std::size_t>(e)].depart;
     const Footprint& shape = vehicle.footprint;
+    if (steep_turns) {
+      return Error{ErrorCode::kTooSteep,
+                   fmt::format("{} at ({:.1f}, {:.1f}): no way {} that keeps to slopes of {:.0f} "
+                               "degrees along and {:.0f} across and to the terrain",
+                               sites[static_cast<std::size_t>(e)].name, out.x, out.y,
+                               left ? "in" : "out", vehicle.max_pitch_deg, vehicle.max_roll_deg),
+                   "leave the row out (tasks.rows), or use a vehicle with larger max_pitch_deg and "
+                   "max_roll_deg",
+                   {}};
+    }
     const double most = 50.0;
     const double ahead = space.room_ahead(out, most, {e / 2, -1});
     return Error{
@@ -352,6 +371,8 @@ Path Transitions::Impl::path(int from, int to) const {
                        turns[static_cast<std::size_t>(w.index)]);
     case WayType::kLanes:
       return lane_path(from, to);
+    case WayType::kGiven:
+      return given[static_cast<std::size_t>(w.index)];
     case WayType::kThroughRow: {
       Path through = path(from, w.index);
       through.append(row_path(rows[static_cast<std::size_t>(w.index / 2)], w.index % 2, radius));
@@ -362,12 +383,13 @@ Path Transitions::Impl::path(int from, int to) const {
   return {};
 }
 
-Result<Transitions> Transitions::build(const Farm& farm, const std::vector<RowRef>& rows,
+Result<Transitions> Transitions::build(const Farm& farm, const Ground& ground,
+                                       const std::vector<RowRef>& rows,
                                        const std::vector<Site>& stops, const Vehicle& vehicle,
                                        const TransitionOptions& options) {
   const Result<RowBodies> bodies = row_bodies(farm, rows, vehicle.footprint, options.margin_m);
   if (!bodies) return tl::unexpected<Error>(bodies.error());
-  auto impl = std::make_unique<Impl>(farm, rows, stops, vehicle, options, *bodies);
+  auto impl = std::make_unique<Impl>(farm, ground, rows, stops, vehicle, options, *bodies);
   if (std::optional<Error> error = impl->shut_in_row()) return tl::unexpected<Error>(*error);
   return Transitions(std::move(impl));
 }
@@ -383,10 +405,25 @@ const Site& Transitions::site(int index) const {
   return impl_->sites[static_cast<std::size_t>(index)];
 }
 
+double Transitions::free_run(int site, bool leaving) const {
+  return impl_->port(leaving ? Impl::out_port(site) : Impl::in_port(site)).end.free_run;
+}
+
 DriveCost Transitions::cost(int from, int to) const {
   const Way& w = impl_->way(from, to);
   if (w.type == WayType::kNone) return {kInfinity, kInfinity, kInfinity};
-  return drive_cost(impl_->vehicle, kind(from, to), w.length, w.cusps);
+  return w.cost;
+}
+
+bool Transitions::offer(int from, int to, const DriveCost& cost, Path path) {
+  Way& w = impl_->way(from, to);
+  if (from == to || path.empty()) return false;
+  // A headland turn is not given up merely because open ground is driven faster.
+  if (kind(from, to) == LegKind::kTurn) return false;
+  if (w.type != WayType::kNone && impl_->value(w.cost) <= impl_->value(cost)) return false;
+  w = {cost, static_cast<int>(impl_->given.size()), WayType::kGiven};
+  impl_->given.push_back(std::move(path));
+  return true;
 }
 
 LegKind Transitions::kind(int from, int to) const {

@@ -12,6 +12,8 @@
 namespace headland {
 namespace {
 
+constexpr double kForever = std::numeric_limits<double>::infinity();
+
 std::string known_places(const Farm& farm) {
   std::string names;
   for (const Poi& poi : farm.pois) names += (names.empty() ? "" : ", ") + poi.id;
@@ -31,21 +33,34 @@ bool names(const std::vector<std::string>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+bool covers_rows(const TaskConfig& task) { return task.places.empty(); }
+
 bool wants(const TaskConfig& task, const Farm& farm, RowRef ref) {
+  if (!covers_rows(task)) return false;
   const std::string& parcel = farm.row_parcels[static_cast<std::size_t>(ref.parcel)].id;
-  if (!names(task.cover, "all") && !names(task.cover, parcel)) return false;
+  const bool everywhere = task.cover.empty() || names(task.cover, "all");
+  if (!everywhere && !names(task.cover, parcel)) return false;
   return task.rows.empty() || names(task.rows, farm.row_name(ref));
+}
+
+bool wants(const TaskConfig& task, const Poi& poi) {
+  return names(task.places, "all") || names(task.places, poi.id) || names(task.places, poi.role);
+}
+
+template <class List, class Name>
+std::string listed(const List& list, Name name, std::string text) {
+  for (const auto& item : list) text += (text.empty() ? "" : ", ") + name(item);
+  return text;
 }
 
 std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
                                       const std::string& key) {
   for (const std::string& id : task.cover) {
     if (id == "all" || farm.find_parcel(id) != nullptr) continue;
-    std::string known = "all";
-    for (const RowParcel& parcel : farm.row_parcels) known += ", " + parcel.id;
     return Error{ErrorCode::kUnknownName,
                  "no row parcel '" + id + "' in the farm",
-                 "allowed: " + known,
+                 "allowed: " + listed(
+                                   farm.row_parcels, [](const auto& p) { return p.id; }, "all"),
                  {{}, 0, key + ".cover"}};
   }
   std::vector<std::string> known;
@@ -57,26 +72,56 @@ std::optional<Error> check_task_names(const TaskConfig& task, const Farm& farm,
                  known.empty() ? "the farm has no rows" : "rows are named like " + known.front(),
                  {{}, 0, key + ".rows"}};
   }
+  for (const std::string& id : task.places) {
+    const bool found = std::any_of(farm.pois.begin(), farm.pois.end(), [&](const Poi& poi) {
+      return id == "all" || id == poi.id || id == poi.role;
+    });
+    if (found) continue;
+    return Error{ErrorCode::kUnknownName,
+                 "no poi of the id or role '" + id + "' in the farm",
+                 "allowed: " + listed(
+                                   farm.pois, [](const Poi& p) { return p.id; }, "all"),
+                 {{}, 0, key + ".visit"}};
+  }
   return std::nullopt;
 }
 
-Result<std::vector<RowRef>> rows_to_cover(const MissionConfig& config, const Farm& farm) {
-  for (std::size_t i = 0; i < config.tasks.size(); ++i) {
-    if (auto error = check_task_names(config.tasks[i], farm, fmt::format("tasks.{}", i))) {
+TaskTerms terms_of(const TaskConfig& task) {
+  TaskTerms terms{task.value_ratio, task.earliest_s, kForever};
+  if (task.latest_s) terms.latest_s = *task.latest_s;
+  return terms;
+}
+
+// Rows and places that the tasks name; each once, by the first task that does.
+Result<void> look_up_tasks(Mission& mission) {
+  const std::vector<TaskConfig>& tasks = mission.config.tasks;
+  const Farm& farm = mission.farm;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (auto error = check_task_names(tasks[i], farm, fmt::format("tasks.{}", i))) {
       return tl::unexpected<Error>(std::move(*error));
     }
   }
-  std::vector<RowRef> rows;
+  const auto first = [&](auto wanted) {
+    const auto at = std::find_if(tasks.begin(), tasks.end(), wanted);
+    return at == tasks.end() ? nullptr : &*at;
+  };
   for (const RowRef ref : farm.all_rows()) {
-    const bool wanted = std::any_of(config.tasks.begin(), config.tasks.end(),
-                                    [&](const TaskConfig& task) { return wants(task, farm, ref); });
-    if (wanted) rows.push_back(ref);
+    const TaskConfig* task = first([&](const TaskConfig& t) { return wants(t, farm, ref); });
+    if (task == nullptr) continue;
+    mission.rows.push_back(ref);
+    mission.row_terms.push_back(terms_of(*task));
   }
-  if (rows.empty()) {
-    return fail(ErrorCode::kNoRows, "the tasks cover no row of the farm",
+  for (int p = 0; p < static_cast<int>(farm.pois.size()); ++p) {
+    const Poi& poi = farm.pois[static_cast<std::size_t>(p)];
+    const TaskConfig* task = first([&](const TaskConfig& t) { return wants(t, poi); });
+    if (task == nullptr) continue;
+    mission.visits.push_back({p, task->accuracy_m, task->dwell_s, terms_of(*task)});
+  }
+  if (mission.rows.empty() && mission.visits.empty()) {
+    return fail(ErrorCode::kNoRows, "the tasks cover no row of the farm and visit no place",
                 "name parcels that have rows, or cover: all", {{}, 0, "tasks"});
   }
-  return rows;
+  return {};
 }
 
 Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Farm& farm,
@@ -85,6 +130,7 @@ Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Fa
   auto vehicle = config::load<Vehicle>(resolve_path(config.model, directory));
   if (!vehicle) return tl::unexpected<Error>(vehicle.error());
   if (config.capacity_wh) vehicle->battery.capacity_wh = *config.capacity_wh;
+  if (config.payload_kg) vehicle->energy.payload_kg = *config.payload_kg;
   const double reserve = vehicle->battery.reserve_soc;
   if (config.soc < reserve) {
     return fail(ErrorCode::kOutOfRange,
@@ -97,7 +143,9 @@ Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Fa
   const auto finish =
       config.finish ? find_place(farm, *config.finish, key + ".finish") : Result<Pose2>(*start);
   if (!finish) return tl::unexpected<Error>(finish.error());
-  return MissionVehicle{config.id, std::move(*vehicle), config.soc, *start, *finish};
+  return MissionVehicle{config.id,  std::move(*vehicle),
+                        config.soc, *start,
+                        *finish,    config.shift_s.value_or(kForever)};
 }
 
 }  // namespace
@@ -108,6 +156,21 @@ std::optional<Error> PlaceConfig::check() const {
   if (named != placed && x_m.has_value() == y_m.has_value()) return std::nullopt;
   return Error{
       ErrorCode::kMissingKey, "a place is needed", "give either poi, or both x_m and y_m", {}};
+}
+
+std::optional<Error> TaskConfig::check() const {
+  const bool rows_too = !cover.empty() || !rows.empty();
+  if (!places.empty() && rows_too) {
+    return Error{ErrorCode::kOutOfRange,
+                 "a task covers rows or visits places",
+                 "write two tasks",
+                 {{}, 0, "visit"}};
+  }
+  if (!latest_s || *latest_s >= earliest_s) return std::nullopt;
+  return Error{ErrorCode::kOutOfRange,
+               "latest_s lies before earliest_s",
+               "write a later time",
+               {{}, 0, "latest_s"}};
 }
 
 std::filesystem::path resolve_path(const std::string& path,
@@ -128,19 +191,26 @@ Result<Mission> load_mission(const MissionConfig& config, const std::filesystem:
   if (!farm) return tl::unexpected<Error>(farm.error());
   mission.farm = std::move(*farm);
 
-  if (config.vehicles.size() != 1) {
-    return fail(ErrorCode::kUnsupported, fmt::format("{} vehicles", config.vehicles.size()),
-                "this version plans for exactly one", {{}, 0, "vehicles"});
+  auto ground = load_ground(mission.farm);
+  if (!ground) return tl::unexpected<Error>(ground.error());
+  mission.ground = std::move(*ground);
+
+  if (config.vehicles.empty()) {
+    return fail(ErrorCode::kMissingKey, "a mission needs a vehicle", "list at least one",
+                {{}, 0, "vehicles"});
   }
   for (std::size_t i = 0; i < config.vehicles.size(); ++i) {
     auto vehicle =
         load_vehicle(config.vehicles[i], mission.farm, directory, fmt::format("vehicles.{}", i));
     if (!vehicle) return tl::unexpected<Error>(vehicle.error());
+    for (const MissionVehicle& other : mission.vehicles) {
+      if (other.id != vehicle->id) continue;
+      return fail(ErrorCode::kUnknownName, "two vehicles are called '" + other.id + "'",
+                  "give each its own id", {{}, 0, fmt::format("vehicles.{}.id", i)});
+    }
     mission.vehicles.push_back(std::move(*vehicle));
   }
-  auto rows = rows_to_cover(config, mission.farm);
-  if (!rows) return tl::unexpected<Error>(rows.error());
-  mission.rows = std::move(*rows);
+  if (auto found = look_up_tasks(mission); !found) return tl::unexpected<Error>(found.error());
   return mission;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,26 +16,48 @@ namespace headland {
 /// One item of a vehicle's tour.
 struct PlanLeg {
   LegKind kind = LegKind::kRow;
-  std::string id;  ///< row, charger, or what is joined
+  std::string id;  ///< row, poi, charger, or what is joined
   DriveCost cost;  ///< a charge has only a duration
   double soc_end = 1.0;
   int cusps = 0;
+  double begin_s = 0.0;  ///< since the mission's start
+  double wait_s = 0.0;   ///< stood still before that: for a slot, or until its time has come
+  double from_m = 0.0;  ///< of a row that is worked in parts: where this part begins and ends, from
+  double to_m = 0.0;    ///< the row's first end; both 0: all of it
 };
 
-/// Driven without a stop but for gear changes; ends at a charger or at the finish.
+/// Driven without a stop but for gear changes; ends at a charger, a visit or the finish.
 struct PlanStage {
-  Path path;            ///< leg numbers index VehiclePlan::legs
-  int charge_leg = -1;  ///< the charge that follows; -1: none
+  Path path;          ///< leg numbers index VehiclePlan::legs; empty if it only stands
+  int stop_leg = -1;  ///< the charge or visit that follows; -1: none
 };
 
 struct VehiclePlan {
   std::string id;
   Vehicle vehicle;
+  Pose2 start;
   double start_soc = 1.0;
   std::vector<PlanLeg> legs;
   std::vector<PlanStage> stages;
-  double energy_j = 0.0;  ///< drawn over all legs
+  double energy_j = 0.0;  ///< drawn over all legs, net
   double min_soc = 1.0;
+  double finish_s = 0.0;  ///< since the mission's start
+  /// At any metre of the plan at least this is left above the reserve when the vehicle drives on to
+  /// a charger, by the plan or by the nearest way [J]. Without chargers: above the reserve.
+  double min_margin_j = 0.0;
+};
+
+/// Why a leg is there, or a task is not.
+struct PlanReason {
+  int vehicle = -1;  ///< in MissionPlan::vehicles; -1: of no vehicle
+  int leg = -1;      ///< -1: a task left out
+  std::string text;
+};
+
+/// A task left out.
+struct DroppedWork {
+  std::string id;  ///< "row north/r3"
+  std::string reason;
 };
 
 enum class PlanStatus { kOptimal, kFeasible };
@@ -43,26 +66,33 @@ enum class PlanStatus { kOptimal, kFeasible };
 struct MissionPlan {
   Objective objective = Objective::kEnergy;
   double value = 0.0;        ///< of the objective, rows included
-  double lower_bound = 0.0;  ///< no plan for this mission is cheaper
+  double lower_bound = 0.0;  ///< no plan that does the same tasks is cheaper
+  bool proven = false;       ///< optimal
   double work_m = 0.0;
   double turn_m = 0.0;
   double transit_m = 0.0;
   double makespan_s = 0.0;
   int charge_stops = 0;
-  std::vector<VehiclePlan> vehicles;
+  double min_margin_j = 0.0;          ///< least of all vehicles'
+  std::vector<VehiclePlan> vehicles;  ///< one per vehicle of the mission, idle ones without legs
+  std::vector<PlanReason> reasons;
+  std::vector<DroppedWork> dropped;
 
   double gap_ratio() const { return value > 0.0 ? (value - lower_bound) / value : 0.0; }
-  /// Optimal where the bound proves it.
-  PlanStatus status() const {
-    return gap_ratio() <= 1e-9 ? PlanStatus::kOptimal : PlanStatus::kFeasible;
-  }
+  PlanStatus status() const { return proven ? PlanStatus::kOptimal : PlanStatus::kFeasible; }
 };
 
-/// Plans a mission: verified ways between all row ends and chargers, the cheapest order of rows,
-/// the cheapest recharge stops for that order (and for its reverse; the cheaper one wins), and the
-/// path. Deterministic for the configuration's seed. Errors: kTurnDoesNotFit, kNoPath,
-/// kEnergyInfeasible, each naming the row.
-Result<MissionPlan> plan_mission(const Mission& mission);
+/// How long a plan may take, and who wants to know.
+struct PlanningHooks {
+  std::function<bool()> stop;                                  ///< true ends the search
+  std::function<void(double fraction, double best)> progress;  ///< of the search
+};
+
+/// Plans a mission: verified ways between all row ends, places and chargers over the terrain, then
+/// the tours of all vehicles with their charges (solve_tour), and the paths. Deterministic for the
+/// configuration's seed unless `stop` is used. Errors: kTurnDoesNotFit, kNoPath, kTooSteep,
+/// kOffTerrain, kEnergyInfeasible, kTaskDoesNotFit, each naming the row or place.
+Result<MissionPlan> plan_mission(const Mission& mission, const PlanningHooks& hooks = {});
 
 }  // namespace headland
 

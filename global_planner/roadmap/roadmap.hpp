@@ -21,7 +21,6 @@ struct RoadmapOptions {
   std::uint64_t seed = 1;
   EdgeCurve curve = EdgeCurve::kClothoid;
   double margin_m = 0.1;  ///< kept between the outline and the edge of the drivable area
-  Objective objective = Objective::kEnergy;
   /// Folder of cache files; empty: none. The file's name is a hash of everything the roadmap
   /// depends on (area, terrain, soil, vehicle, options, format version).
   std::filesystem::path cache;
@@ -47,7 +46,8 @@ class Roadmap {
   /// Joins the goals to the roadmap (and to each other where near) and finds the cheapest ways
   /// between all pairs by the objective; edges may be negative (recuperation), searched with
   /// potentials. Where there is no way, the edge's cost is infinite.
-  Result<GoalGraph> connect(const std::vector<Site>& goals) const;
+  Result<GoalGraph> connect(const std::vector<Site>& goals,
+                            const CostWeights& objective = Objective::kEnergy) const;
 
  private:
   struct Impl;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/config/visit.hpp"
+#include "core/world/ground.hpp"
 #include "global_planner/mission/mission_plan.hpp"
 #include "sim/lab/metrics.hpp"
 #include "sim/lab/trackers.hpp"
@@ -61,29 +62,50 @@ struct RunMetrics {
   std::string reason;  ///< why not, if not
   int rows_done = 0;
   int rows_total = 0;
+  int visits_done = 0;
+  int visits_total = 0;
+  int charges = 0;
   TrackingMetrics tracking;
   double energy_j = 0.0;
   double duration_s = 0.0;
+  double waited_s = 0.0;  ///< for a slot at a charger, or for a task's time
   double min_soc = 1.0;
-  bool reserve_kept = true;  ///< the battery never went below its reserve
+  bool reserve_kept = true;  ///< no battery ever went below its reserve
   int wrong_gear_count = 0;  ///< ticks that drove against the path's gear
 };
 
+/// One vehicle's run.
 struct Run {
   RunMetrics metrics;  ///< of every tick
   std::vector<bool> leg_done;
-  std::vector<TraceRow> trace;  ///< every tick
+  std::vector<TraceRow> trace;  ///< every tick that it drove
+};
+
+/// All vehicles of a plan.
+struct FleetRun {
+  RunMetrics metrics;         ///< sums, and the worst of all; tracking over all ticks
+  std::vector<Run> vehicles;  ///< as in the plan
 };
 
 /// The ticks of a trace at least `period` [s] apart, the first and last among them.
 std::vector<int> trace_ticks(const std::vector<TraceRow>& trace, double period);
 
+/// A tick of one of the vehicles.
+struct FleetTick {
+  std::size_t vehicle = 0;
+  std::size_t tick = 0;
+};
+/// All vehicles' trace_ticks, by time.
+std::vector<FleetTick> fleet_ticks(const FleetRun& run, double period);
+
 /// Called about every simulated second with the fraction done and the simulated time [s].
 using Progress = std::function<void(double fraction, double time_s)>;
 
-/// Drives one vehicle's plan in lock-step simulation with the tracker that suits its kinematics.
-/// Deterministic: same plan, configuration and seed, same trace to the bit.
-Run drive_plan(const VehiclePlan& plan, const Farm& farm, const SimulationConfig& config,
-               const Progress& progress = {});
+/// Drives the plans of all vehicles in lock-step simulation, each with the tracker that suits its
+/// kinematics. At chargers vehicles queue for slots, in the order in which they arrive. Vehicles do
+/// not see each other yet. Deterministic: same plan, configuration and seed, same trace to the bit.
+FleetRun drive_fleet(const std::vector<VehiclePlan>& plans, const std::vector<Visit>& visits,
+                     const Farm& farm, const Ground& ground, const SimulationConfig& config,
+                     const Progress& progress = {});
 
 }  // namespace headland

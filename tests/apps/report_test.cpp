@@ -42,7 +42,8 @@ TEST(Report, PageHoldsTheSameDataAsTheJsonFile) {
   const auto data = data_of(text_of(folder / "report.html"));
   EXPECT_EQ(data, nlohmann::json::parse(text_of(folder / "report.json")));
   EXPECT_EQ(data["kind"], "run");
-  EXPECT_EQ(data["series"]["s_m"].size(), data["series"]["leg"].size());
+  const auto& series = data["vehicles"][0]["series"];
+  EXPECT_EQ(series["s_m"].size(), series["leg"].size());
   EXPECT_EQ(data["tables"][0]["columns"].size(), data["tables"][0]["rows"][0].size());
 }
 
@@ -98,28 +99,67 @@ TEST(Report, PageCarriesTheLicenceOfD3) {
 
 TEST(Report, LengthsAreRoundedToMillimetresAndMissingNumbersAreNull) {
   Report report;
-  report.series.s_m = {0.0, 1.23456};
-  report.series.x_m = {-0.0001, 2.0};
-  report.series.error_m = {std::numeric_limits<double>::quiet_NaN(), 0.01234567};
+  ReportSeries series;
+  series.s_m = {0.0, 1.23456};
+  series.x_m = {-0.0001, 2.0};
+  series.error_m = {std::numeric_limits<double>::quiet_NaN(), 0.01234567};
+  report.vehicles = {{"t1", 0.123456, series, {{1.00049, 0.2, 0.9, "charger"}}}};
   report.tiles = {{"a", std::numeric_limits<double>::infinity()}, {"b", 1234567.89}, {"c", 42.0}};
   const auto json = nlohmann::json::parse(*report_json(report));
-  EXPECT_EQ(json["series"]["s_m"][1], 1.235);
-  EXPECT_EQ(json["series"]["x_m"].dump(), "[0,2.0]");
-  EXPECT_TRUE(json["series"]["error_m"][0].is_null());
-  EXPECT_EQ(json["series"]["error_m"][1], 0.0123);
+  const auto& vehicle = json["vehicles"][0];
+  EXPECT_EQ(vehicle["series"]["s_m"][1], 1.235);
+  EXPECT_EQ(vehicle["series"]["x_m"].dump(), "[0,2.0]");
+  EXPECT_TRUE(vehicle["series"]["error_m"][0].is_null());
+  EXPECT_EQ(vehicle["series"]["error_m"][1], 0.0123);
+  EXPECT_TRUE(vehicle["series"]["soc"].empty());
+  EXPECT_EQ(vehicle["reserve_soc"], 0.12346);
+  EXPECT_EQ(vehicle["stops"][0]["s_m"], 1.0);
   EXPECT_TRUE(json["tiles"][0]["value"].is_null());
   EXPECT_EQ(json["tiles"][1]["value"], 1234570.0);
   EXPECT_EQ(json["tiles"][2]["value"].dump(), "42");
-  EXPECT_TRUE(json["series"]["soc"].empty());
 }
 
 TEST(Report, ColumnsOfDifferentLengthAreAnError) {
   Report report;
-  report.series.s_m = {0.0, 1.0};
-  report.series.x_m = {0.0};
+  report.vehicles.resize(2);
+  report.vehicles[1].series.s_m = {0.0, 1.0};
+  report.vehicles[1].series.x_m = {0.0};
   const auto json = report_json(report);
   ASSERT_FALSE(json);
   EXPECT_EQ(json.error().code, ErrorCode::kInternal);
+}
+
+TEST(Report, HeightsThatDoNotFillTheirGridAreAnError) {
+  Report report;
+  report.terrain = ReportTerrain{{0.0, 0.0}, 1.0, 3, 2, {1.0, 2.0, 3.0}};
+  ASSERT_FALSE(report_json(report));
+}
+
+TEST(Report, VehiclesReasonsAndTerrainAreWritten) {
+  const Report report = sample_fleet_report();
+  const auto json = nlohmann::json::parse(*report_json(report));
+  EXPECT_EQ(json["vehicles"].size(), 3U);
+  EXPECT_EQ(json["vehicles"][2]["name"], "t3");
+  EXPECT_FALSE(json["vehicles"][0]["stops"].empty());
+  EXPECT_EQ(json["why"].back().count("leg"), 0U) << "of no leg";
+  EXPECT_EQ(json["why"][0]["vehicle"], 0);
+  EXPECT_EQ(json["terrain"]["columns"], report.terrain->columns);
+  const std::size_t bytes = 2 * report.terrain->heights_m.size();
+  EXPECT_EQ(json["terrain"]["heights"].get<std::string>().size(), (bytes + 2) / 3 * 4);
+  EXPECT_NEAR(json["terrain"]["high_m"].get<double>(), 24.0, 1.0);
+  int of_third = 0;
+  for (const auto& feature : json["map"]["features"]) of_third += feature.value("vehicle", -1) == 2;
+  EXPECT_GT(of_third, 10);
+}
+
+TEST(Report, ManyVehiclesShareThePointsThatAPageMayHave) {
+  Report report = sample_report(40, 100000);
+  report.vehicles.resize(8, report.vehicles.front());
+  const auto json = nlohmann::json::parse(*report_json(report));
+  std::size_t points = 0;
+  for (const auto& vehicle : json["vehicles"]) points += vehicle["series"]["s_m"].size();
+  EXPECT_LE(points, static_cast<std::size_t>(kMaxReportPoints));
+  EXPECT_GE(points, static_cast<std::size_t>(kMaxReportPoints / 2));
 }
 
 TEST(Report, UnwritableFolderIsAnErrorThatNamesIt) {

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/report_terrain.hpp"
 #include "core/base/random.hpp"
 #include "core/geometry/angle.hpp"
 
@@ -95,6 +96,7 @@ void add_legs(Report& report, const Legs& legs) {
   double soc = 0.95;
   for (std::size_t i = 0; i < legs.lines.size(); ++i) {
     auto feature = ReportFeature::line("plan", {}, legs.lines[i]);
+    feature.vehicle = 0;
     feature.leg = static_cast<int>(i);
     feature.leg_kind = legs.kinds[i];
     report.features.push_back(feature);
@@ -115,7 +117,7 @@ void add_series(Report& report, const Legs& legs, int samples) {
   double total = 0.0;
   for (const Polyline& line : legs.lines) total += length(line);
   RandomStream random(7, "sample report");
-  auto& series = report.series;
+  auto& series = report.vehicles.front().series;
   double s = 0.0;
   double error = 0.0;
   double soc = 0.95;
@@ -144,7 +146,94 @@ void add_series(Report& report, const Legs& legs, int samples) {
   }
 }
 
+// Works every third row from `first`, and charges whenever it comes down to 35 %.
+void add_vehicle(Report& report, int first, int rows, double start_soc) {
+  const int number = static_cast<int>(report.vehicles.size());
+  ReportVehicle vehicle{.name = fmt::format("t{}", number + 1), .reserve_soc = 0.2};
+  ReportTable& table = report.tables.front();
+  double s = 0.0;
+  double soc = start_soc;
+  int leg = 0;
+  const auto drive = [&](const Polyline& line, const char* kind, const std::string& id) {
+    auto feature = ReportFeature::line("plan", id, line);
+    feature.vehicle = number;
+    feature.leg = leg;
+    feature.leg_kind = kind;
+    report.features.push_back(feature);
+    const double per_metre = std::string(kind) == "row" ? 0.0006 : 0.0004;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      const Point2 along = line[i] - line[i - 1];
+      const int steps = std::max(1, static_cast<int>(along.norm()));
+      for (int k = 0; k < steps; ++k) {
+        const Point2 p = line[i - 1] + along * (static_cast<double>(k) / steps);
+        vehicle.series.s_m.push_back(s);
+        vehicle.series.x_m.push_back(p.x());
+        vehicle.series.y_m.push_back(p.y());
+        vehicle.series.soc.push_back(soc);
+        vehicle.series.leg.push_back(leg);
+        s += along.norm() / steps;
+        soc -= per_metre * along.norm() / steps;
+      }
+    }
+    table.rows.push_back({vehicle.name, static_cast<double>(leg++), kind, id, length(line),
+                          length(line) / 1.4, 100.0 * soc});
+  };
+  const Point2 charger = tilted(-6.0, -34.0);
+  Point2 at = charger;
+  for (int row = first; row < rows; row += 3) {
+    Polyline line = row_line(row);
+    if ((row - first) / 3 % 2 == 1) std::swap(line.front(), line.back());
+    if (soc < 0.35) {
+      drive({at, charger}, "transit", "to Charger 1");
+      vehicle.stops.push_back({s, soc, 0.9, "Charger 1"});
+      report.why.push_back({number, leg,
+                            fmt::format("charges here: row R{} and the way back would "
+                                        "leave {:.0f} %, below the reserve of 20 %",
+                                        row + 1, 100.0 * soc - 9.0)});
+      table.rows.push_back(
+          {vehicle.name, static_cast<double>(leg++), "charge", "Charger 1", 0.0, 1800.0, 90.0});
+      soc = 0.9;
+      at = charger;
+    }
+    drive({at, line.front()}, "transit", fmt::format("to R{}", row + 1));
+    drive(line, "row", fmt::format("R{}", row + 1));
+    at = line.back();
+  }
+  report.vehicles.push_back(std::move(vehicle));
+}
+
 }  // namespace
+
+Report sample_fleet_report() {
+  constexpr int kRows = 30;
+  Report report;
+  report.title = "Three tractors on a hill";
+  report.status = "feasible";
+  report.version = "0.1.0";
+  report.seed = 1;
+  report.tiles = {{"Vehicles", 3.0}, {"Rows", 30.0}, {"Left out", 1.0, "task"}};
+  report.tables.push_back({.title = "Legs",
+                           .columns = {{"vehicle"},
+                                       {"leg"},
+                                       {"kind"},
+                                       {"name"},
+                                       {"length", "m"},
+                                       {"duration", "s"},
+                                       {"charge at end", "%"}},
+                           .rows = {}});
+  add_ground(report, kRows);
+  for (int row = 0; row < kRows; ++row) {
+    report.features.push_back(
+        ReportFeature::line("row", fmt::format("R{}", row + 1), row_line(row)));
+  }
+  for (int v = 0; v < 3; ++v) add_vehicle(report, v, kRows, 0.95 - 0.1 * v);
+  report.why.push_back({-1, -1, "row R31 is left out: its way is steeper than 20 deg"});
+  const Point2 corner(-60.0, -60.0);
+  const Point2 other(180.0, 180.0);
+  const Terrain hills = Terrain::hills({.seed = 3, .relief_m = 24.0}, corner, other);
+  report.terrain = terrain_raster(Ground(Farm{}, hills), MapBox(corner, other));
+  return report;
+}
 
 Report sample_report(int rows, int samples) {
   Report report;
@@ -155,7 +244,7 @@ Report sample_report(int rows, int samples) {
   report.seed = 7;
   report.config_hash = "9f3c27a1e04b5d68";
   report.config_yaml = "mission: girona\nobjective: energy\nvehicles:\n  - id: t1\n    soc: 0.95\n";
-  report.reserve_soc = 0.15;
+  report.vehicles = {{.name = "t1", .reserve_soc = 0.15}};
   report.tiles = {{"Rows done", fmt::format("{} / {}", rows, rows)},
                   {"Work", kRowLength * rows, "m"},
                   {"Turns", 214.6, "m"},

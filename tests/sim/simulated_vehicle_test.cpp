@@ -12,24 +12,116 @@ Vehicle rover() {
   vehicle.steering = Steering::kDifferential;
   vehicle.min_turning_radius_m = 1.0;
   vehicle.acceleration_mps2 = 100.0;
-  vehicle.battery = {10.0, 0.1, 100.0, 50.0, 20.0};
+  vehicle.energy.mass_kg = 200.0;
+  vehicle.energy.drive_efficiency_ratio = 0.8;
+  vehicle.energy.recuperation_efficiency_ratio = 0.5;
+  vehicle.energy.base_power_w = 40.0;
+  vehicle.battery.capacity_wh = 1000.0;
   return vehicle;
 }
 
-TEST(SimulatedVehicle, DrawsWhatDriveCostPlans) {
-  Vehicle vehicle = rover();
-  vehicle.work_speed_mps = 1.0;
-  SimulatedVehicle sim(vehicle, {}, 1.0, {}, 1);
-  for (int i = 0; i < 1000; ++i) sim.step({1.0, 0.0, 0.0}, LegKind::kRow, 0.01);
-  const double distance = sim.truth().pose.x;
-  EXPECT_NEAR(sim.drawn_j(), drive_cost(vehicle, LegKind::kRow, distance).energy_j, 2.0);
-  EXPECT_NEAR(sim.soc(), 1.0 - sim.drawn_j() / vehicle.battery.capacity_j(), 1e-12);
+// z = slope x, 400 x 100 m.
+Ground ramp(double slope) {
+  std::vector<double> heights;
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 5; ++column) heights.push_back(slope * 100.0 * (column - 2));
+  }
+  return {Farm{}, Terrain::from_grid({-200.0, -50.0}, 100.0, 5, 2, heights)};
 }
 
-TEST(SimulatedVehicle, ChargesToFullInTheTimeThePowerTakes) {
-  SimulatedVehicle sim(rover(), {}, 0.5, {}, 1);
-  EXPECT_NEAR(sim.charge_full(1800.0), 10.0, 1e-9);  // 5 Wh at 1.8 kW
+// Drives straight ahead at a speed for some steps of 20 ms.
+void drive(SimulatedVehicle& sim, double speed, int steps) {
+  for (int i = 0; i < steps; ++i) sim.step({speed, 0.0, 0.0}, LegKind::kTransit, 0.02);
+}
+
+TEST(SimulatedVehicle, DrawsWhatPathCostPlansOnceItHasItsSpeed) {
+  Vehicle vehicle = rover();
+  vehicle.transit_speed_mps = 1.0;
+  for (const double slope : {0.0, 0.05, -0.02, -0.2}) {
+    const Ground ground = ramp(slope);
+    SimulatedVehicle sim(vehicle, {-100.0, 0.0, 0.0}, 0.5, {}, 1, ground);
+    drive(sim, 1.0, 50);
+    const double drawn = sim.drawn_j();
+    Path path;
+    path.append_straight(sim.truth().pose, 60.0, 0);
+    drive(sim, 1.0, 3000);
+    const auto planned = path_cost(vehicle, ground, path, LegKind::kTransit);
+    EXPECT_NEAR(sim.drawn_j() - drawn, planned->energy_j, 1e-6 * 60.0 * 200.0);
+    EXPECT_NEAR(sim.height(), slope * sim.truth().pose.x, 1e-4);
+    EXPECT_NEAR(sim.soc(), 0.5 - sim.drawn_j() / vehicle.battery.capacity_j(), 1e-12);
+  }
+}
+
+TEST(SimulatedVehicle, SpeedingUpCostsAndBrakingGivesPartOfItBack) {
+  Vehicle vehicle = rover();
+  vehicle.acceleration_mps2 = 1.0;
+  vehicle.energy.base_power_w = 0.0;
+  vehicle.energy.rolling_factor_ratio = 1e-9;
+  SimulatedVehicle sim(vehicle, {}, 0.5, {}, 1);
+  drive(sim, 2.0, 200);
+  const double kinetic = 0.5 * 200.0 * 4.0;
+  EXPECT_GT(sim.drawn_j(), kinetic / 0.8);
+  EXPECT_LT(sim.drawn_j(), 1.05 * kinetic / 0.8);  // slip of the acceleration
+  const double fast = sim.drawn_j();
+  drive(sim, 0.0, 200);
+  EXPECT_NEAR(sim.drawn_j() - fast, -0.5 * kinetic, 1e-3);
+}
+
+TEST(SimulatedVehicle, CurvesCostTheTurnLoss) {
+  Vehicle vehicle = rover();
+  vehicle.acceleration_mps2 = 100.0;
+  const auto drawn_at = [&vehicle](double yaw_rate) {
+    SimulatedVehicle sim(vehicle, {}, 1.0, {}, 1);
+    for (int i = 0; i < 500; ++i) sim.step({1.0, 0.0, yaw_rate}, LegKind::kTurn, 0.02);
+    return sim.drawn_j();
+  };
+  EXPECT_NEAR(drawn_at(0.5), drawn_at(0.0), 1e-6);
+  vehicle.energy.turn_loss_ratio = 0.5;
+  // c m v^2 |kappa| over 10 m, and a little slip.
+  EXPECT_NEAR(drawn_at(0.5) - drawn_at(0.0), 0.5 * 200.0 * 0.5 * 10.0 / 0.8, 20.0);
+  EXPECT_NEAR(drawn_at(-0.5), drawn_at(0.5), 1e-6);
+}
+
+TEST(SimulatedVehicle, SoilsAreFelt) {
+  Farm farm;
+  farm.soils.push_back(
+      {"dune", SoilClass::kSand, {{{-9.0, -9.0}, {90.0, -9.0}, {90.0, 9.0}, {-9.0, 9.0}}, {}}});
+  SimulatedVehicle firm(rover(), {}, 1.0, {}, 1);
+  SimulatedVehicle sand(rover(), {}, 1.0, {}, 1, Ground(farm, std::nullopt));
+  drive(firm, 1.0, 500);
+  drive(sand, 1.0, 500);
+  EXPECT_GT(sand.drawn_j(), 2.0 * firm.drawn_j());
+}
+
+TEST(SimulatedVehicle, AFullBatteryTakesNoMore) {
+  SimulatedVehicle sim(rover(), {-100.0, 0.0, 0.0}, 1.0, {}, 1, ramp(-0.3));
+  drive(sim, 1.0, 2000);
   EXPECT_EQ(sim.soc(), 1.0);
+  EXPECT_GE(sim.drawn_j(), 0.0);
+  EXPECT_LT(sim.drawn_j(), 1.0);
+}
+
+TEST(SimulatedVehicle, BeyondTheTerrainItGoesOnAtTheLastHeight) {
+  SimulatedVehicle sim(rover(), {190.0, 0.0, 0.0}, 0.5, {}, 1, ramp(0.1));
+  drive(sim, 1.0, 2000);
+  EXPECT_GT(sim.truth().pose.x, 220.0);
+  EXPECT_NEAR(sim.height(), 20.0, 0.01);
+}
+
+TEST(SimulatedVehicle, ChargesByTheCurve) {
+  SimulatedVehicle sim(rover(), {}, 0.5, {}, 1);
+  EXPECT_NEAR(sim.charge(ChargeCurve(1800.0), 0.75), 500.0, 1e-9);  // 250 Wh at 1.8 kW
+  EXPECT_NEAR(sim.soc(), 0.75, 1e-15);
+  const ChargeCurve slow = ChargeCurve::cc_cv(1800.0, 0.8, 0.1);
+  const double expected = slow.time(0.75, 1.0, 3.6e6);
+  EXPECT_NEAR(sim.charge(slow, 1.0), expected, 1e-9);
+  EXPECT_GT(expected, 500.0);
+  EXPECT_EQ(sim.soc(), 1.0);
+  EXPECT_EQ(sim.charge(slow, 0.5), 0.0);
+  EXPECT_EQ(sim.soc(), 1.0);
+  sim.draw(3600.0);
+  EXPECT_NEAR(sim.soc(), 0.999, 1e-12);
+  EXPECT_EQ(sim.drawn_j(), 3600.0);
 }
 
 TEST(SimulatedVehicle, FixesAreOffByAtMostTheAccuracy) {

@@ -8,6 +8,11 @@
 #include "core/world/internal/geojson.hpp"
 
 namespace headland::internal {
+namespace {
+
+constexpr config::Range kPower{1.0, 1e7};  // [W]
+
+}  // namespace
 
 const nlohmann::json* Properties::find(const std::string& key, Need need) {
   known_.push_back(key);
@@ -65,6 +70,42 @@ int Properties::whole(const std::string& key, config::Range range, Need need, in
     return otherwise;
   }
   return static_cast<int>(number);
+}
+
+std::optional<std::size_t> Properties::choice(const std::string& key,
+                                              const std::vector<std::string>& names) {
+  const std::string name = text(key, Need::kRequired);
+  const auto at = std::find(names.begin(), names.end(), name);
+  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
+  if (!has(key)) return std::nullopt;
+  wrong(ErrorCode::kUnknownName, key, "'" + name + "' is not a known name",
+        config::suggestion(name, names));
+  return std::nullopt;
+}
+
+ChargeCurve Properties::charge_curve(const std::string& key, const ChargeCurve& otherwise) {
+  const auto* value = find(key, Need::kOptional);
+  if (value == nullptr) return otherwise;
+  if (!value->is_array()) return ChargeCurve(number(key, kPower, Need::kOptional, 1.0));
+  std::vector<ChargePoint> points;
+  for (const nlohmann::json& pair : *value) {
+    if (!pair.is_array() || pair.size() != 2 || !pair[0].is_number() || !pair[1].is_number()) {
+      wrong(ErrorCode::kWrongType, key, pair.dump() + " is not a pair [soc, power]", "");
+      return otherwise;
+    }
+    const ChargePoint point{pair[0].get<double>(), pair[1].get<double>()};
+    const bool in_range = point.soc >= 0.0 && point.soc <= 1.0 && point.power_w >= kPower.min &&
+                          point.power_w <= kPower.max;
+    if (!in_range || (!points.empty() && !(point.soc > points.back().soc))) {
+      wrong(ErrorCode::kOutOfRange, key, pair.dump() + " is out of range or order",
+            "[soc, power] with soc rising from 0 to 1, and 1 to 10 million watts");
+      return otherwise;
+    }
+    points.push_back(point);
+  }
+  if (!points.empty()) return ChargeCurve(std::move(points));
+  wrong(ErrorCode::kOutOfRange, key, "the list is empty", "at least one pair [soc, power]");
+  return otherwise;
 }
 
 nlohmann::json Properties::raw(const std::string& key) {

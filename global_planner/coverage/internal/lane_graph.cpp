@@ -25,17 +25,26 @@ constexpr int kBlock = 1024;     // edges verified at once
 }  // namespace
 
 LaneGraph::LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, bool reverses,
-                     CostRate rate)
+                     const WayPricer& pricer)
     : space_(space),
       poses_(std::move(poses)),
       radius_(radius),
       reverses_(reverses),
       reach_(std::max(12.0, 5.0 * radius)),
-      rate_(rate) {
+      pricer_(pricer),
+      rate_(pricer.flat_rate(LegKind::kTransit)) {
   index_poses();
   join(candidates());
   join_reverses();
+  price_steps();
   sort_steps();
+}
+
+WayCost LaneGraph::priced(const Path& path, int cusps) const {
+  const std::optional<DriveCost> drive = pricer_.price(path, LegKind::kTransit, cusps);
+  if (!drive) return {kInfinity, {}, 0};
+  const int within = static_cast<int>(path.segments().size()) - 1;
+  return {drive->value(pricer_.objective()), *drive, std::max(within, cusps)};
 }
 
 Pose2 LaneGraph::pose(int node) const {
@@ -139,17 +148,16 @@ void LaneGraph::join(const std::vector<Candidate>& candidates) {
       step.from = edge.from;
       step.to = edge.to;
       step.radius = radii[k];
-      step.way =
-          way_cost(radii[k] == radius_ ? edge.length
-                                       : dubins_length(pose(edge.from), pose(edge.to), radii[k]),
-                   0);
-      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, step.way.length);
+      const double length = radii[k] == radius_
+                                ? edge.length
+                                : dubins_length(pose(edge.from), pose(edge.to), radii[k]);
+      accepted_[static_cast<std::size_t>(edge.from)].emplace_back(edge.to, length);
       steps_.push_back(step);
       if (std::pair(edge.to ^ 1, edge.from ^ 1) == std::pair(edge.from, edge.to)) continue;
       step.from = edge.to ^ 1;
       step.to = edge.from ^ 1;
       step.mirrored = true;
-      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, step.way.length);
+      accepted_[static_cast<std::size_t>(step.from)].emplace_back(step.to, length);
       steps_.push_back(step);
     }
   }
@@ -186,9 +194,17 @@ void LaneGraph::join_reverses() {
     step.to = node ^ 1;
     step.kind = StepKind::kTurnRound;
     step.mirrored = other == 1;
-    step.way = way_cost(turn_round(false).length(), turn_round(false).cusps());
     steps_.push_back(step);
   }
+}
+
+// Each step in its own direction; those too steep to drive are dropped.
+void LaneGraph::price_steps() {
+  parallel_for(static_cast<int>(steps_.size()), [this](int s) {
+    Step& step = steps_[static_cast<std::size_t>(s)];
+    step.way = priced(step_path(step));
+  });
+  std::erase_if(steps_, [](const Step& step) { return step.way.cost == kInfinity; });
 }
 
 // The radius of a curve along which the outline fits both ways; 0: none.
@@ -210,8 +226,16 @@ void LaneGraph::sort_steps() {
   step_begin_.assign(all + 1, 0);
   for (const Step& step : steps_) ++step_begin_[static_cast<std::size_t>(step.from) + 1];
   for (std::size_t n = 0; n < all; ++n) step_begin_[n + 1] += step_begin_[n];
+  potential_.resize(all);
+  for (int n = 0; n < nodes(); ++n) potential_[static_cast<std::size_t>(n)] = potential(pose(n));
+  for (std::size_t p = 0; p < passages_.size(); ++p) {
+    potential_[static_cast<std::size_t>(nodes()) + p] = potential(passages_[p].path.start_pose());
+  }
+  const auto of = [this](int node) { return potential_[static_cast<std::size_t>(node)]; };
   arcs_.clear();
-  for (const Step& step : steps_) arcs_.push_back({step.way, step.to});
+  for (const Step& step : steps_) {
+    arcs_.push_back({step.way.cost + of(step.from) - of(step.to), step.way, step.to});
+  }
 }
 
 Curve LaneGraph::Option::curve(const LaneGraph& graph, const Pose2& out, bool reversing) const {
@@ -270,8 +294,13 @@ std::vector<Connection> LaneGraph::connect(const Port& port, bool reversing) con
     } else if (space_.fits(advance(port.end.out, 0.0, option.lead), curve, port.travel,
                            {port.end.row, -1})) {
       settled.push_back(option.node);
-      const Turn turn{option.lead, 0.0, curve};
-      found.push_back({option.node, way_cost(turn.length(), turn.cusps()), turn});
+      Connection connection{option.node, {}, {option.lead, 0.0, curve}};
+      connection.way = priced(port.travel == Travel::kBack
+                                  ? turn_path(pose(option.node ^ 1), mirrored(connection.turn))
+                                  : turn_path(port.end.out, connection.turn),
+                              connection.turn.cusps());
+      if (connection.way.cost == kInfinity) continue;
+      found.push_back(connection);
       costs.push_back(option.cost);
       continue;
     } else if (option.radius == radius_ && !reversing) {
@@ -291,6 +320,8 @@ void LaneGraph::add_passages(std::vector<Passage> passages) {
   for (std::size_t p = 0; p < passages_.size(); ++p) {
     const Passage& passage = passages_[p];
     const int inside = nodes() + static_cast<int>(p);
+    const WayCost through = priced(passage.path);
+    if (through.cost == kInfinity) continue;
     Step step;
     step.passage = static_cast<int>(p);
     for (std::size_t c = 0; c < passage.in.size(); ++c) {
@@ -306,8 +337,7 @@ void LaneGraph::add_passages(std::vector<Passage> passages) {
       step.from = inside;
       step.to = passage.out[c].node;
       step.connection = static_cast<int>(c);
-      const WayCost& out = passage.out[c].way;
-      step.way = way_cost(passage.path.length() + out.length, out.cusps);
+      step.way = through + passage.out[c].way;
       steps_.push_back(step);
     }
   }
@@ -341,31 +371,32 @@ Path LaneGraph::step_path(const Step& step) const {
 LaneGraph::Search::Search(const LaneGraph& graph)
     : graph_(graph), reached_(graph.step_begin_.size() - 1) {}
 
-// Dijkstra's algorithm, begun at all connections of the port.
+// Dijkstra's algorithm over costs made non-negative by potentials, begun at all connections of the
+// port.
 void LaneGraph::Search::run(const std::vector<Connection>& from) {
-  std::fill(reached_.begin(), reached_.end(), Reached{{kInfinity, kInfinity, 0}, -1});
+  std::fill(reached_.begin(), reached_.end(), Reached{{kInfinity, {}, 0}, kInfinity, -1});
   queue_.clear();
-  const auto reach = [this](int node, const WayCost& so_far, const WayCost& step, int number) {
+  const auto reach = [this](int node, double reduced, const WayCost& way, int number) {
     Reached& there = reached_[static_cast<std::size_t>(node)];
-    const double cost = so_far.cost + step.cost;
-    if (cost >= there.way.cost) return;
-    there = {{cost, so_far.length + step.length, so_far.cusps + step.cusps}, number};
-    queue_.emplace_back(cost, node);
+    if (reduced >= there.reduced) return;
+    there = {way, reduced, number};
+    queue_.emplace_back(reduced, node);
     std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
   };
   for (std::size_t c = 0; c < from.size(); ++c) {
-    reach(from[c].node, {}, from[c].way, -2 - static_cast<int>(c));
+    const double potential = graph_.potential_[static_cast<std::size_t>(from[c].node)];
+    reach(from[c].node, from[c].way.cost - potential, from[c].way, -2 - static_cast<int>(c));
   }
   while (!queue_.empty()) {
     std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-    const auto [cost, node] = queue_.back();
+    const auto [reduced, node] = queue_.back();
     queue_.pop_back();
     const auto n = static_cast<std::size_t>(node);
-    const WayCost so_far = reached_[n].way;
-    if (cost > so_far.cost) continue;
+    const Reached so_far = reached_[n];
+    if (reduced > so_far.reduced) continue;
     for (int s = graph_.step_begin_[n]; s < graph_.step_begin_[n + 1]; ++s) {
       const Arc& arc = graph_.arcs_[static_cast<std::size_t>(s)];
-      reach(arc.to, so_far, arc.way, s);
+      reach(arc.to, reduced + arc.reduced, so_far.way + arc.way, s);
     }
   }
 }
@@ -386,11 +417,9 @@ int LaneGraph::Search::best_entry(const std::vector<Connection>& port) const {
 
 WayCost LaneGraph::Search::to(const std::vector<Connection>& port) const {
   const int best = best_entry(port);
-  if (best < 0) return {kInfinity, kInfinity, 0};
+  if (best < 0) return {kInfinity, {}, 0};
   const Connection& entry = port[static_cast<std::size_t>(best)];
-  const WayCost& there = reached_[static_cast<std::size_t>(entry.node ^ 1)].way;
-  return {there.cost + entry.way.cost, there.length + entry.way.length,
-          there.cusps + entry.way.cusps};
+  return reached_[static_cast<std::size_t>(entry.node ^ 1)].way + entry.way;
 }
 
 Path LaneGraph::Search::path_to(const Pose2& out, const std::vector<Connection>& from,

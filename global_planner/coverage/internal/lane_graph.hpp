@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "global_planner/coverage/internal/turn.hpp"
+#include "global_planner/coverage/internal/way_pricer.hpp"
 
 namespace headland::coverage {
 
@@ -16,15 +17,20 @@ struct Port {
 
 /// What a way costs and is.
 struct WayCost {
-  double cost = 0.0;    ///< in the objective's unit
-  double length = 0.0;  ///< [m]
+  double cost = 0.0;  ///< in the objective's unit
+  DriveCost drive;
   int cusps = 0;
+
+  friend WayCost operator+(const WayCost& a, const WayCost& b) {
+    return {a.cost + b.cost, a.drive + b.drive, a.cusps + b.cusps};
+  }
 };
 
 /// A track from a port out to a node of the lane graph.
 struct Connection {
   int node = 0;
-  WayCost way;  ///< of the turn
+  WayCost
+      way;  ///< of the turn, driven as the port's ways are: out of it (kForth) or into it (kBack)
   Turn turn;
 };
 
@@ -44,7 +50,7 @@ class LaneGraph {
   /// turn if the vehicle `reverses`, else a loop). Of longer edges only those are kept that are
   /// notably shorter than two shorter ones (a greedy spanner).
   LaneGraph(const FreeSpace& space, std::vector<Pose2> poses, double radius, bool reverses,
-            CostRate rate);
+            const WayPricer& pricer);
 
   int nodes() const { return 2 * static_cast<int>(poses_.size()); }
   Pose2 pose(int node) const;
@@ -71,7 +77,8 @@ class LaneGraph {
     // How a node is reached.
     struct Reached {
       WayCost way;
-      int last_step = -1;  // -1: none; below: -2 - index of the first connection
+      double reduced = 0.0;  // its cost less the node's potential
+      int last_step = -1;    // -1: none; below: -2 - index of the first connection
     };
     const LaneGraph& graph_;
     std::vector<Reached> reached_;  // of nodes
@@ -94,6 +101,7 @@ class LaneGraph {
   };
   // Of a step, what Dijkstra's inner loop needs.
   struct Arc {
+    double reduced;  // cost plus the potential that is lost: >= 0
     WayCost way;
     int to;
   };
@@ -121,9 +129,9 @@ class LaneGraph {
   Curve turn_round(bool other_hand) const;
   void join_reverses();
   double fitting_radius(const Candidate& edge) const;
-  WayCost way_cost(double length, int cusps) const {
-    return {rate_.of(length, cusps), length, cusps};
-  }
+  WayCost priced(const Path& path, int cusps = -1) const;
+  double potential(const Pose2& pose) const { return pricer_.potential(pose.position()); }
+  void price_steps();
   void sort_steps();
   Path step_path(const Step& step) const;
 
@@ -132,11 +140,13 @@ class LaneGraph {
   double radius_;
   bool reverses_;
   double reach_;  // longest distance of an edge [m]
-  CostRate rate_;
+  const WayPricer& pricer_;
+  CostRate rate_;  // on flat ground, for the order in which tracks are tried
   std::vector<Passage> passages_;
-  std::vector<Step> steps_;      // by their beginning
-  std::vector<Arc> arcs_;        // of the steps, in their order
-  std::vector<int> step_begin_;  // of node n: [step_begin_[n], step_begin_[n + 1])
+  std::vector<Step> steps_;        // by their beginning
+  std::vector<Arc> arcs_;          // of the steps, in their order
+  std::vector<int> step_begin_;    // of node n: [step_begin_[n], step_begin_[n + 1])
+  std::vector<double> potential_;  // of nodes, then passages
   std::vector<std::vector<std::pair<int, double>>> accepted_;  // while joining: to, length
   // Poses in a grid of cells `reach_` wide.
   Point2 corner_{0.0, 0.0};

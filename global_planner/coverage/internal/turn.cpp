@@ -129,7 +129,7 @@ bool resolve(Candidate& candidate, const TurnEnd& a, const TurnEnd& b, double ra
 
 }  // namespace
 
-CostRate cost_rate(const Vehicle& vehicle, LegKind kind, Objective objective) {
+CostRate cost_rate(const Vehicle& vehicle, LegKind kind, const CostWeights& objective) {
   return {drive_cost(vehicle, kind, 1.0, 0).value(objective),
           drive_cost(vehicle, kind, 0.0, 1).value(objective)};
 }
@@ -163,11 +163,7 @@ Path mirrored(const Path& path) {
   Path back;
   const std::vector<PathPiece>& pieces = path.pieces();
   for (auto piece = pieces.rbegin(); piece != pieces.rend(); ++piece) {
-    PathPiece turned = *piece;
-    turned.start =
-        reversed(advance(piece->start, piece->curvature, sign(piece->gear) * piece->length));
-    turned.curvature = -piece->curvature;
-    back.append(turned);
+    back.append(turned_round(*piece));
   }
   return back;
 }

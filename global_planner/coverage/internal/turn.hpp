@@ -16,7 +16,7 @@ struct CostRate {
   double per_cusp = 0.0;
   double of(double length, int cusps) const { return per_metre * length + per_cusp * cusps; }
 };
-CostRate cost_rate(const Vehicle& vehicle, LegKind kind, Objective objective);
+CostRate cost_rate(const Vehicle& vehicle, LegKind kind, const CostWeights& objective);
 
 /// An end of a manoeuvre: a pose that looks outwards. The manoeuvre leaves one end along its pose
 /// and enters the other against it.

@@ -4,183 +4,187 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include <fmt/format.h>
-
-#include "core/geometry/region.hpp"
 
 namespace headland::mission {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The state of charge along a tour under construction.
+// One vehicle's tour under construction.
 class TourBuilder {
  public:
-  TourBuilder(const Mission& mission, const Transitions& transitions)
-      : mission_(mission), transitions_(transitions) {
-    const MissionVehicle& vehicle = mission.vehicles.front();
-    plan_.id = vehicle.id;
-    plan_.vehicle = vehicle.vehicle;
-    plan_.start_soc = vehicle.soc;
-    plan_.min_soc = vehicle.soc;
-    soc_ = vehicle.soc;
+  TourBuilder(const TourModel& model, int vehicle) : model_(model), v_(vehicle) {
+    const MissionVehicle& given = model.mission().vehicles[static_cast<std::size_t>(vehicle)];
+    plan_.id = given.id;
+    plan_.vehicle = given.vehicle;
+    plan_.start = given.start;
+    plan_.start_soc = given.soc;
+    plan_.min_soc = given.soc;
+    soc_ = given.soc;
+    site_ = model.start(vehicle);
+  }
+
+  void follow(const TourRoute& route) {
     plan_.stages.emplace_back();
-  }
-
-  void add_way(int from, int to) {
-    const Path path = transitions_.path(from, to);
-    if (path.empty()) return;  // two sites at the same pose
-    add_leg(transitions_.kind(from, to),
-            transitions_.site(from).name + " to " + transitions_.site(to).name, path,
-            transitions_.cost(from, to));
-  }
-
-  void add_row(const RowVisit& visit) {
-    const RowRef ref = mission_.rows[static_cast<std::size_t>(visit.row)];
-    const Path path = row_path(mission_.farm.row(ref), visit.entry, plan_.vehicle.turning_radius());
-    add_leg(LegKind::kRow, mission_.farm.row_name(ref), path,
-            drive_cost(plan_.vehicle, LegKind::kRow, path.length()));
-  }
-
-  void add_charge(int charger_index) {
-    const Charger& charger = mission_.farm.chargers[static_cast<std::size_t>(charger_index)];
-    PlanLeg leg{LegKind::kCharge, charger.id, {}, 1.0, 0};
-    leg.cost.duration_s =
-        (1.0 - soc_) * plan_.vehicle.battery.capacity_j() / charger.curve.max_power();
-    soc_ = 1.0;
-    plan_.stages.back().charge_leg = static_cast<int>(plan_.legs.size());
-    plan_.legs.push_back(leg);
-    plan_.stages.emplace_back();
+    for (const TourStop& stop : route.stops) {
+      if (stop.task >= 0) {
+        do_task(stop);
+      } else {
+        charge(stop);
+      }
+    }
+    drive_to(model_.finish(v_));
+    if (plan_.stages.back().path.empty() && plan_.stages.size() > 1) plan_.stages.pop_back();
+    plan_.finish_s = route.finish_s;
   }
 
   VehiclePlan finish() {
-    if (plan_.stages.back().path.empty() && plan_.stages.size() > 1) plan_.stages.pop_back();
+    set_margin();
     return std::move(plan_);
   }
 
  private:
-  void add_leg(LegKind kind, const std::string& id, const Path& path, const DriveCost& cost) {
-    soc_ -= cost.energy_j / plan_.vehicle.battery.capacity_j();
-    plan_.energy_j += cost.energy_j;
-    plan_.min_soc = std::min(plan_.min_soc, soc_);
-    plan_.stages.back().path.append(path, static_cast<int>(plan_.legs.size()));
-    plan_.legs.push_back({kind, id, cost, soc_, static_cast<int>(path.segments().size()) - 1});
+  Battery battery() const { return plan_.vehicle.battery; }
+
+  void do_task(const TourStop& stop) {
+    const ModelTask& task = model_.tasks()[static_cast<std::size_t>(stop.task)];
+    const TourMode& mode = model_.problem()
+                               .tasks[static_cast<std::size_t>(stop.task)]
+                               .modes[static_cast<std::size_t>(stop.mode)];
+    const bool in_one_go = site_ == mode.entry && task.row >= 0;
+    drive_to(mode.entry);
+    const DriveCost cost = model_.work_cost(v_, stop.task, stop.mode);
+    const double wait = stop.begin_s - stop.arrival_s;
+    if (task.visit >= 0) {
+      stand(LegKind::kTask, model_.leg_id(stop.task), cost, wait);
+    } else if (in_one_go && !plan_.legs.empty() && plan_.legs.back().kind == LegKind::kRow) {
+      prolong_row(stop, task, cost);
+    } else {
+      if (wait > 0.0) stand(LegKind::kTask, "wait", {}, wait);
+      add_leg(LegKind::kRow, model_.leg_id(stop.task), model_.work_path(v_, stop.task, stop.mode),
+              cost);
+      mark_part(task, stop.mode, true);
+    }
+    site_ = mode.exit;
   }
 
-  const Mission& mission_;
-  const Transitions& transitions_;
+  // The next part of the row at whose cut the vehicle has arrived at work.
+  void prolong_row(const TourStop& stop, const ModelTask& task, const DriveCost& cost) {
+    PlanLeg& leg = plan_.legs.back();
+    Path path = model_.work_path(v_, stop.task, stop.mode);
+    plan_.stages.back().path.append(path, static_cast<int>(plan_.legs.size()) - 1);
+    leg.cost += cost;
+    draw(cost);
+    leg.soc_end = soc_;
+    time_ += cost.duration_s;
+    mark_part(task, stop.mode, false);
+  }
+
+  void mark_part(const ModelTask& task, int mode, bool first) {
+    PlanLeg& leg = plan_.legs.back();
+    const Row& row =
+        model_.mission().farm.row(model_.mission().rows[static_cast<std::size_t>(task.row)]);
+    const double length_m = length(row.line);
+    if (first) leg.from_m = (mode == 0 ? task.begin : task.end) * length_m;
+    leg.to_m = (mode == 0 ? task.end : task.begin) * length_m;
+    const bool whole = std::abs(std::abs(leg.to_m - leg.from_m) - length_m) < 1e-9;
+    if (whole && !first) leg.from_m = leg.to_m = 0.0;
+    if (whole && first && task.begin == 0.0 && task.end == 1.0) leg.from_m = leg.to_m = 0.0;
+  }
+
+  void drive_to(int site) {
+    const Path path = model_.way_path(v_, site_, site);
+    if (!path.empty()) {
+      add_leg(model_.way_kind(v_, site_, site),
+              model_.site_name(site_) + " to " + model_.site_name(site), path,
+              model_.way_cost(v_, site_, site));
+    }
+    site_ = site;
+  }
+
+  void charge(const TourStop& stop) {
+    const TourStation& station = model_.problem().stations[static_cast<std::size_t>(stop.station)];
+    drive_to(station.site);
+    const Charger& charger = model_.mission().farm.chargers[static_cast<std::size_t>(stop.station)];
+    DriveCost cost;
+    cost.duration_s = stop.end_s - stop.begin_s;
+    // As much as the solver puts in: without its margin, the battery is the fuller for it.
+    soc_ = std::min(1.0, soc_ + (stop.end_j - stop.arrival_j) / battery().capacity_j());
+    stand(LegKind::kCharge, charger.id, cost, stop.begin_s - stop.arrival_s);
+  }
+
+  // A leg without a path: the stage ends before it.
+  void stand(LegKind kind, const std::string& id, const DriveCost& cost, double wait) {
+    plan_.stages.back().stop_leg = static_cast<int>(plan_.legs.size());
+    time_ += wait;
+    draw(cost);
+    PlanLeg leg{kind, id, cost, soc_};
+    leg.begin_s = time_;
+    leg.wait_s = wait;
+    plan_.legs.push_back(std::move(leg));
+    starts_.push_back(site_);
+    plan_.stages.emplace_back();
+    time_ += cost.duration_s;
+  }
+
+  void add_leg(LegKind kind, const std::string& id, const Path& path, const DriveCost& cost) {
+    plan_.stages.back().path.append(path, static_cast<int>(plan_.legs.size()));
+    draw(cost);
+    PlanLeg leg{kind, id, cost, soc_};
+    leg.cusps = static_cast<int>(path.segments().size()) - 1;
+    leg.begin_s = time_;
+    plan_.legs.push_back(std::move(leg));
+    starts_.push_back(site_);
+    time_ += cost.duration_s;
+  }
+
+  void draw(const DriveCost& cost) {
+    const double capacity = battery().capacity_j();
+    plan_.energy_j += cost.energy_j;
+    plan_.min_soc = std::min(plan_.min_soc, soc_ - cost.peak_j / capacity);
+    soc_ = std::min(1.0, soc_ - cost.energy_j / capacity);
+  }
+
+  // From the end of the plan: what has to be had at the beginning of each leg to reach a charger,
+  // by the plan or from the leg's end straight away. Along a leg the margin can only grow: what is
+  // driven is no longer needed.
+  void set_margin() {
+    const double capacity = battery().capacity_j();
+    const double reserve = battery().reserve_j();
+    double need = model_.escape_j(v_, model_.finish(v_));
+    double margin = soc_ * capacity - reserve - need;
+    for (auto k = static_cast<int>(plan_.legs.size()) - 1; k >= 0; --k) {
+      const auto i = static_cast<std::size_t>(k);
+      const PlanLeg& leg = plan_.legs[i];
+      const double begin_soc = k == 0 ? plan_.start_soc : plan_.legs[i - 1].soc_end;
+      if (leg.kind == LegKind::kCharge) {
+        need = 0.0;
+      } else {
+        DriveCost rest = leg.cost;
+        rest += DriveCost{0.0, 0.0, 0.0, need};
+        need = rest.peak_j;
+      }
+      margin = std::min(margin, begin_soc * capacity - reserve - need);
+      if (leg.kind != LegKind::kRow) need = std::min(need, model_.escape_j(v_, starts_[i]));
+    }
+    plan_.min_margin_j = margin;
+  }
+
+  const TourModel& model_;
+  int v_;
   VehiclePlan plan_;
+  std::vector<int> starts_;  // site where each leg begins
+  int site_;
   double soc_ = 1.0;
+  double time_ = 0.0;
 };
 
-// Smallest extra of going from anywhere to anywhere else by way of a charger.
-double least_detour(const Eigen::MatrixXd& cost, const SiteIndex& sites) {
-  double least = kInfinity;
-  const int ends = 2 * sites.rows;
-  for (int c = 0; c < sites.chargers; ++c) {
-    const int charger = sites.charger(c);
-    for (int from = 0; from < ends + 1; ++from) {
-      for (int to = 0; to < ends + 2; ++to) {
-        const bool same_row = from < ends && to < ends && from / 2 == to / 2;
-        if (to == sites.start() || same_row) continue;
-        const double by_way = cost(from, charger) + cost(charger, to);
-        if (std::isfinite(by_way)) least = std::min(least, by_way - cost(from, to));
-      }
-    }
-  }
-  return least;
-}
-
-}  // namespace
-
-std::optional<Error> check_standing_places(const Mission& mission) {
-  constexpr double kSpacing = 0.25;  // of the outlines along a row [m]
-  const Region drivable(drivable_area(mission.farm));
-  const MissionVehicle& vehicle = mission.vehicles.front();
-  const auto inside = [&](const Pose2& pose) {
-    return drivable.contains(pose, vehicle.vehicle.footprint);
-  };
-  const auto place_error = [](const std::string& place, const Pose2& pose, const std::string& key) {
-    return Error{
-        ErrorCode::kNoPath,
-        fmt::format("{} at ({:.1f}, {:.1f}): the vehicle does not fit into the drivable area "
-                    "there",
-                    place, pose.x, pose.y),
-        "put it on a road, headland or free parcel, clear of keep-outs",
-        {{}, 0, key}};
-  };
-  if (!inside(vehicle.start)) return place_error("the start", vehicle.start, "vehicles.0.start");
-  if (!inside(vehicle.finish))
-    return place_error("the finish", vehicle.finish, "vehicles.0.finish");
-  for (const RowRef ref : mission.rows) {
-    const Path path = row_path(mission.farm.row(ref), 0, vehicle.vehicle.turning_radius());
-    for (const PathSample& sample : path.sample(kSpacing)) {
-      // Either way round: the row may be driven in both directions.
-      if (inside(sample.pose) || inside(reversed(sample.pose))) continue;
-      return Error{
-          ErrorCode::kNoPath,
-          fmt::format("row {} at ({:.1f}, {:.1f}): the vehicle's outline leaves the drivable "
-                      "area or enters a keep-out",
-                      mission.farm.row_name(ref), sample.pose.x, sample.pose.y),
-          "leave the row out (tasks.rows), or correct keep-out, parcel or row",
-          {}};
-    }
-  }
-  return std::nullopt;
-}
-
-double forced_detours(const Mission& mission, const Transitions& transitions,
-                      const SiteIndex& sites, double tour_bound) {
-  if (sites.chargers == 0) return 0.0;
-  const MissionVehicle& vehicle = mission.vehicles.front();
-  const Battery& battery = vehicle.vehicle.battery;
-  RechargeBound bound;
-  for (const DriveCost& cost : row_costs(mission)) bound.energy_j += cost.energy_j;
-  // Only where energy is the objective does the tour's bound speak of energy.
-  if (mission.config.objective == Objective::kEnergy) bound.energy_j += tour_bound;
-  bound.start_j = (vehicle.soc - battery.reserve_soc) * battery.capacity_j();
-  bound.per_charge_j = (1.0 - battery.reserve_soc) * battery.capacity_j();
-  if (min_charge_stops(bound) <= 0) return 0.0;
-  bound.detour_cost = std::max(0.0, least_detour(transitions.matrix(), sites));
-  if (!std::isfinite(bound.detour_cost)) return 0.0;
-  double charging = 0.0;
-  if (mission.config.objective == Objective::kTime) {
-    double power = 0.0;
-    for (const Charger& charger : mission.farm.chargers)
-      power = std::max(power, charger.curve.max_power());
-    charging = (bound.energy_j - bound.start_j) / power;
-  }
-  return recharge_lower_bound(bound) + charging;
-}
-
-VehiclePlan build_vehicle_plan(const Mission& mission, const Transitions& transitions,
-                               const SiteIndex& sites, const std::vector<RowVisit>& visits,
-                               const std::vector<ChargeStop>& stops) {
-  TourBuilder tour(mission, transitions);
-  auto stop = stops.begin();
-  for (std::size_t gap = 0; gap <= visits.size(); ++gap) {
-    const int from = gap == 0 ? sites.start() : visits[gap - 1].exit_end();
-    const int to = gap == visits.size() ? sites.finish() : visits[gap].entry_end();
-    if (stop != stops.end() && stop->gap == static_cast<int>(gap)) {
-      tour.add_way(from, sites.charger(stop->charger));
-      tour.add_charge(stop->charger);
-      tour.add_way(sites.charger(stop->charger), to);
-      ++stop;
-    } else {
-      tour.add_way(from, to);
-    }
-    if (gap < visits.size()) tour.add_row(visits[gap]);
-  }
-  return tour.finish();
-}
-
 void add_totals(MissionPlan& plan) {
+  plan.min_margin_j = kInfinity;
   for (const VehiclePlan& vehicle : plan.vehicles) {
-    double duration = 0.0;
     for (const PlanLeg& leg : vehicle.legs) {
-      duration += leg.cost.duration_s;
       switch (leg.kind) {
         case LegKind::kRow:
           plan.work_m += leg.cost.length_m;
@@ -197,33 +201,80 @@ void add_totals(MissionPlan& plan) {
           break;
       }
     }
-    plan.makespan_s = std::max(plan.makespan_s, duration);
+    plan.makespan_s = std::max(plan.makespan_s, vehicle.finish_s);
+    plan.min_margin_j = std::min(plan.min_margin_j, vehicle.min_margin_j);
   }
 }
 
-std::vector<DriveCost> row_costs(const Mission& mission) {
-  const Vehicle& vehicle = mission.vehicles.front().vehicle;
-  std::vector<DriveCost> costs;
-  for (const RowRef ref : mission.rows) {
-    const Path path = row_path(mission.farm.row(ref), 0, vehicle.turning_radius());
-    costs.push_back(drive_cost(vehicle, LegKind::kRow, path.length()));
+// Where the battery would fall below its reserve without the charge at `leg`: a text.
+std::string charge_reason(const VehiclePlan& plan, std::size_t leg) {
+  const Battery& battery = plan.vehicle.battery;
+  const double arrival = leg == 0 ? plan.start_soc : plan.legs[leg - 1].soc_end;
+  double soc = arrival;
+  double driven = 0.0;
+  std::string need = "it is needed to reach a charger from the finish";
+  for (std::size_t k = leg + 1; k < plan.legs.size(); ++k) {
+    const PlanLeg& next = plan.legs[k];
+    if (next.kind == LegKind::kCharge) {
+      need = fmt::format(
+          "without it the next charge, at {}, would begin with a smaller margin "
+          "than the plan keeps",
+          next.id);
+      break;
+    }
+    if (soc - next.cost.peak_j / battery.capacity_j() < battery.reserve_soc) {
+      need = fmt::format(
+          "without it the charge would fall below the reserve of {:.0f} % {:.0f} m "
+          "on, in '{}'",
+          100.0 * battery.reserve_soc, driven, next.id);
+      break;
+    }
+    soc -= next.cost.energy_j / battery.capacity_j();
+    driven += next.cost.length_m;
   }
-  return costs;
+  const PlanLeg& charge = plan.legs[leg];
+  return fmt::format("{} charges {:.2f} kWh at {} ({:.0f} to {:.0f} %): {}", plan.id,
+                     (charge.soc_end - arrival) * battery.capacity_j() / 3.6e6, charge.id,
+                     100.0 * arrival, 100.0 * charge.soc_end, need);
 }
 
-Error with_row_name(Error error, const std::string& word, const Mission& mission,
-                    const std::vector<RowRef>& numbered) {
-  const auto at = error.what.find(word + " ");
-  if (at == std::string::npos) return error;
-  const auto begin = at + word.size() + 1;
-  const auto end = error.what.find_first_not_of("0123456789", begin);
-  if (end == begin) return error;
-  if (end != std::string::npos && end - begin > 6) return error;
-  const auto index = static_cast<std::size_t>(std::stoi(error.what.substr(begin)));
-  if (index < numbered.size()) {
-    error.what.replace(at, end - at, "row " + mission.farm.row_name(numbered[index]));
+void add_reasons(MissionPlan& plan) {
+  for (std::size_t v = 0; v < plan.vehicles.size(); ++v) {
+    const VehiclePlan& vehicle = plan.vehicles[v];
+    for (std::size_t leg = 0; leg < vehicle.legs.size(); ++leg) {
+      if (vehicle.legs[leg].kind != LegKind::kCharge) continue;
+      plan.reasons.push_back(
+          {static_cast<int>(v), static_cast<int>(leg), charge_reason(vehicle, leg)});
+    }
   }
-  return error;
+  for (const DroppedWork& work : plan.dropped) {
+    plan.reasons.push_back({-1, -1, work.id + " is left out: " + work.reason});
+  }
+}
+
+}  // namespace
+
+MissionPlan build_plan(const TourModel& model, const TourSolution& solution) {
+  MissionPlan plan;
+  plan.objective = model.mission().config.objective;
+  double lost = 0.0;
+  for (const DroppedTask& dropped : solution.dropped) {
+    lost += model.problem().tasks[static_cast<std::size_t>(dropped.task)].reward;
+    plan.dropped.push_back({model.task_name(dropped.task), dropped.reason});
+  }
+  plan.value = solution.cost - lost;
+  plan.lower_bound = std::clamp(solution.lower_bound - lost, std::min(0.0, plan.value), plan.value);
+  plan.proven = solution.optimal;
+  for (int v = 0; v < static_cast<int>(model.mission().vehicles.size()); ++v) {
+    TourBuilder tour(model, v);
+    for (const TourRoute& route : solution.routes) {
+      if (route.vehicle == v && !route.stops.empty()) tour.follow(route);
+    }
+    plan.vehicles.push_back(tour.finish());
+  }
+  add_totals(plan);
+  add_reasons(plan);
+  return plan;
 }
 
 }  // namespace headland::mission

@@ -95,6 +95,7 @@ TreeAnswer one_way_tour(const RowTourProblem& problem, const OneWaySearch& searc
   const double n = costs.size;
   TreeSearch limits;
   limits.stop = search.stop;
+  limits.improved = search.improved;
   limits.whole_costs = whole(costs);
   limits.most_nodes = 1 + std::lround(kFirstTreeSteps / (n * n));
   const TreeAnswer first = search_assignments(costs, {costs}, {}, limits);

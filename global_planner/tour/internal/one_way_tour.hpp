@@ -12,6 +12,7 @@ struct OneWaySearch {
   std::uint64_t seed = 1;
   int iterations = 0;          ///< local-search kicks; 0: a number that suits the size
   std::function<bool()> stop;  ///< may be empty
+  std::function<void(double cost)> improved;  ///< may be empty
 };
 
 /// The cheapest order of rows of which each can be entered at its first end only (an asymmetric

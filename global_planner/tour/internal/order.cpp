@@ -79,11 +79,15 @@ class Rows {
   double per_second_;
 };
 
-std::optional<OrderAnswer> one_way_order(const RowTourProblem& rows, const TourOptions& options) {
+std::optional<OrderAnswer> one_way_order(const RowTourProblem& rows, const TourOptions& options,
+                                         double constant) {
   OneWaySearch search;
   search.seed = options.seed;
   search.iterations = static_cast<int>(std::min(options.iterations, 100'000'000L));
   search.stop = options.stop;
+  if (options.progress) {
+    search.improved = [&](double cost) { options.progress(0.0, cost + constant); };
+  }
   const TreeAnswer tour = one_way_tour(rows, search);
   if (tour.next.empty()) return {};
   OrderAnswer answer;
@@ -115,8 +119,9 @@ std::optional<OrderAnswer> solve_order(const TourProblem& problem, const TourOpt
   if (!fits(problem)) return {};
   const Rows converted(problem);
   const RowTourProblem rows = converted.rows();
-  auto answer = all_one_way(problem) && rows.rows() > kExactTasks ? one_way_order(rows, options)
-                                                                  : row_order(rows, options);
+  auto answer = all_one_way(problem) && rows.rows() > kExactTasks
+                    ? one_way_order(rows, options, converted.constant())
+                    : row_order(rows, options);
   if (!answer || !(answer->cost < kNever)) return {};
   answer->optimal =
       answer->cost <= answer->lower_bound + kProven * std::max(1.0, std::abs(answer->cost));

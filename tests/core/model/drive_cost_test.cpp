@@ -20,8 +20,8 @@ Vehicle vehicle() {
 }
 
 TEST(DriveCost, AddsRollingBaseAndImplement) {
-  // Firm soil: 0.05 of the weight, and slip of 0.15 of that.
-  const double rolling = 0.05 * 100.0 * 9.80665 / (1.0 - 0.15 * 0.05) / 0.5;
+  // Firm soil: 0.05 of the weight, and slip of 0.16 of that.
+  const double rolling = 0.05 * 100.0 * 9.80665 / (1.0 - 0.16 * 0.05) / 0.5;
   const DriveCost row = drive_cost(vehicle(), LegKind::kRow, 100.0);
   EXPECT_DOUBLE_EQ(row.duration_s, 50.0);
   EXPECT_NEAR(row.energy_j, 100.0 * rolling + 160.0 * 50.0, 1e-9);

@@ -97,6 +97,8 @@ TEST(FarmIo, ReadsEveryKindWithItsProperties) {
       feature(R"("kind": "charger", "id": "c", "power_w": 22000, "slots": 2, "heading_deg": -90)",
               point({-30, 20})),
       feature(R"("kind": "terrain", "path": "dem.tif")", "null"),
+      feature(R"("kind": "soil", "id": "wet", "class": "soft")", square(10, 10, 20)),
+      feature(R"("kind": "soil", "class": "sand")", square(20, 10, 20)),
   })});
   ASSERT_TRUE(farm) << to_string(farm.error());
   EXPECT_EQ(farm->name, "Test");
@@ -133,6 +135,44 @@ TEST(FarmIo, ReadsEveryKindWithItsProperties) {
   ASSERT_EQ(farm->terrain_files.size(), 1u);
   EXPECT_EQ(std::filesystem::path(farm->terrain_files[0]).filename(), "dem.tif");
   EXPECT_GT(farm->terrain_files[0].size(), 7u);  // beside the farm file
+  EXPECT_FALSE(farm->hills);
+  ASSERT_EQ(farm->soils.size(), 2u);  // in the file's order: later ones lie on top
+  EXPECT_EQ(farm->soils[0].id, "wet");
+  EXPECT_EQ(farm->soils[0].soil, SoilClass::kSoft);
+  EXPECT_EQ(farm->soils[1].id, "soil-1");
+  EXPECT_EQ(farm->soils[1].soil, SoilClass::kSand);
+  EXPECT_NEAR(area(farm->soils[1].boundary), 400.0, 0.1);
+}
+
+TEST(FarmIo, ChargersGiveConstantPowerOrACurve) {
+  const auto curve = [](const std::string& power) {
+    const auto farm = load_texts({collection(
+        {feature(R"("kind": "charger", "id": "c", "power_w": )" + power, point({0, 0}))})});
+    EXPECT_TRUE(farm) << to_string(farm.error());
+    return farm->chargers[0].curve;
+  };
+  EXPECT_EQ(curve("5000").power(0.3), 5000.0);
+  const ChargeCurve falling = curve("[[0, 22000], [0.8, 22000], [1, 3000]]");
+  ASSERT_EQ(falling.points().size(), 3u);
+  EXPECT_EQ(falling.power(0.5), 22000.0);
+  EXPECT_NEAR(falling.power(0.9), 12500.0, 1e-9);
+  EXPECT_EQ(curve("[[0.5, 700]]").power(0.9), 700.0);
+}
+
+TEST(FarmIo, HillsMayBeGenerated) {
+  const auto hills = [](const std::string& text) {
+    return load_texts({collection({feature(R"("kind": "terrain", )" + text, "null")})});
+  };
+  const auto farm =
+      hills(R"("hills_seed": 7, "hills_relief_m": 35, "hills_wavelength_m": 150, "cell_m": 1)");
+  ASSERT_TRUE(farm) << to_string(farm.error());
+  ASSERT_TRUE(farm->hills);
+  EXPECT_EQ(farm->hills->seed, 7u);
+  EXPECT_EQ(farm->hills->relief_m, 35.0);
+  EXPECT_EQ(farm->hills->wavelength_m, 150.0);
+  EXPECT_EQ(farm->hills->cell_m, 1.0);
+  EXPECT_TRUE(farm->terrain_files.empty());
+  EXPECT_EQ(hills(R"("hills_seed": 3)")->hills->cell_m, HillSpec{}.cell_m);
 }
 
 TEST(FarmIo, DefaultsFillWhatTheFileLeavesOut) {
@@ -195,6 +235,10 @@ TEST(FarmIo, WrittenTextReadsBackToTheSameText) {
       feature(R"("kind": "poi", "id": "w", "role": "dock", "heading_deg": 33.3)", point({-40, 1})),
       feature(R"("kind": "charger", "id": "c", "heading_deg": -120)", point({-30, 20})),
       feature(R"("kind": "terrain", "path": "/data/dem.tif")", "null"),
+      feature(R"("kind": "terrain", "hills_seed": 7, "hills_relief_m": 12.5)", "null"),
+      feature(R"("kind": "soil", "id": "wet", "class": "tilled")", square(0, 0, 30)),
+      feature(R"("kind": "charger", "id": "cv", "power_w": [[0, 9000], [0.7, 9000], [1, 500.5]])",
+              point({-30, 25})),
   })});
   ASSERT_TRUE(farm) << to_string(farm.error());
   farm->keep_outs[0].boundary.holes.push_back({{-48, 1}, {-48, 2}, {-47, 1}});
@@ -207,6 +251,11 @@ TEST(FarmIo, WrittenTextReadsBackToTheSameText) {
             2e-4);
   EXPECT_EQ(again->keep_outs[0].boundary.holes.size(), 1u);
   EXPECT_EQ(again->name, "Test");
+  EXPECT_EQ(again->terrain_files, farm->terrain_files);
+  EXPECT_EQ(again->hills->seed, 7u);
+  EXPECT_EQ(again->hills->relief_m, 12.5);
+  EXPECT_EQ(again->soils[0].soil, SoilClass::kTilled);
+  EXPECT_EQ(again->chargers[1].curve.power(1.0), 500.5);
 }
 
 TEST(FarmIo, AgridsClassesBecomeOurKinds) {
@@ -366,6 +415,48 @@ TEST(FarmIoErrors, MissingKeys) {
       HasSubstr("headland_outside_m: 1e+300 is out of range; allowed: 0 to 1000"));
   EXPECT_THAT(error_of({feature(R"("kind": "charger", "id": "c", "slots": 1.5)", point({0, 0}))}),
               HasSubstr("features.0.properties.slots: 1.5 is not a whole number"));
+}
+
+TEST(FarmIoErrors, ChargingCurvesAreChecked) {
+  const auto power = [](const std::string& value) {
+    return error_of(
+        {feature(R"("kind": "charger", "id": "c", "power_w": )" + value, point({0, 0}))});
+  };
+  const std::string place = "farm.geojson:2: features.0.properties.power_w: ";
+  EXPECT_EQ(power("[]"), place + "the list is empty; at least one pair [soc, power] [E106]");
+  EXPECT_EQ(power("[[0, 5], [1]]"), place + "[1] is not a pair [soc, power] [E105]");
+  EXPECT_EQ(power("[[0, \"5\"]]"), place + "[0,\"5\"] is not a pair [soc, power] [E105]");
+  for (const char* list : {"[[0.5, 5], [0.5, 4]]", "[[0, 5], [1.1, 4]]", "[[-0.1, 5]]",
+                           "[[0, 5], [1, 0]]", "[[0.8, 5], [0.2, 4]]", "[[0, 1e9]]"}) {
+    EXPECT_THAT(power(list), HasSubstr("is out of range or order; [soc, power] with soc")) << list;
+  }
+  EXPECT_THAT(power("0"), StartsWith(place + "0 is out of range"));
+  EXPECT_THAT(power("\"fast\""), StartsWith(place + "'fast' is not a number"));
+}
+
+TEST(FarmIoErrors, TerrainAndSoilAreChecked) {
+  const auto terrain = [](const std::string& properties) {
+    return error_of({feature(R"("kind": "terrain")" + properties, "null")});
+  };
+  EXPECT_THAT(terrain(""), HasSubstr("properties.path: required key is missing"));
+  EXPECT_THAT(terrain(R"(, "hills_seed": 0.5)"), HasSubstr("hills_seed: 0.5 is not a whole numb"));
+  EXPECT_THAT(terrain(R"(, "path": "a.tif", "hills_seed": 1)"),
+              HasSubstr("hills_seed: a second terrain"));
+  EXPECT_EQ(terrain(R"(, "hills_seed": 1, "hills_releif_m": 3)"),
+            "farm.geojson:2: features.0.properties.hills_releif_m: unknown key; did you mean "
+            "'hills_relief_m'? [E103]");
+  EXPECT_THAT(terrain(R"(, "hills_seed": 1, "cell_m": 0)"), HasSubstr("cell_m: 0 is out of range"));
+  EXPECT_THAT(terrain(R"(, "path": "a.tif", "cell_m": 1)"), HasSubstr("cell_m: unknown key"));
+  const auto hills = feature(R"("kind": "terrain", "hills_seed": 1)", "null");
+  EXPECT_THAT(error_of({hills, hills}),
+              StartsWith("farm.geojson:3: features.1.properties.hills_seed"));
+  EXPECT_EQ(error_of({feature(R"("kind": "soil", "class": "tiled")", square(0, 0, 9))}),
+            "farm.geojson:2: features.0.properties.class: 'tiled' is not a known name; did you "
+            "mean 'tilled'? [E108]");
+  EXPECT_THAT(error_of({feature(R"("kind": "soil")", square(0, 0, 9))}),
+              HasSubstr("properties.class: required key is missing"));
+  EXPECT_THAT(error_of({feature(R"("kind": "soil", "class": "sand")", point({0, 0}))}),
+              HasSubstr("features.0.geometry.type: 'Point' is not the geometry of this kind"));
 }
 
 TEST(FarmIoErrors, MissingAndWrongGeometry) {

@@ -27,13 +27,14 @@ struct Net {
   explicit Net(const Farm& farm, bool reverses = false)
       : area(drivable_area(farm)),
         space(area, {}, kOutline, 0.1, 0.1),
-        graph(space, lane_poses(farm, area, {}, space, 0.9, kRadius), kRadius, reverses,
-              {1.0, 0.0}) {}
+        pricer(Vehicle{}, Ground(), Objective::kLength),
+        graph(space, lane_poses(farm, area, {}, space, 0.9, kRadius), kRadius, reverses, pricer) {}
   std::vector<Connection> at(const Pose2& out, Travel travel) const {
     return graph.connect({{out, -1, 0.0}, travel}, false);
   }
   std::vector<Polygon> area;
   FreeSpace space;
+  WayPricer pricer;
   LaneGraph graph;
 };
 
@@ -47,12 +48,12 @@ TEST(LaneGraph, PathsAreAsLongAsTheSearchSaysAndLeadThere) {
   search.run(from);
   const WayCost way = search.to(to);
   const Path path = search.path_to(start, from, to);
-  EXPECT_NEAR(path.length(), way.length, 1e-9);
-  EXPECT_NEAR(way.cost, way.length, 1e-9);
+  EXPECT_NEAR(path.length(), way.drive.length_m, 1e-9);
+  EXPECT_NEAR(way.cost, way.drive.length_m, 1e-9);
   EXPECT_NEAR((path.end_pose().position() - goal.position()).norm(), 0.0, 1e-6);
   EXPECT_NEAR(wrap_angle(path.end_pose().yaw - goal.yaw), 0.0, 1e-6);
-  EXPECT_GE(way.length, dubins_length(start, goal, kRadius) - 1e-9);
-  EXPECT_LE(way.length, 1.15 * (72.0 + 45.0));  // no great detour from along the road
+  EXPECT_GE(way.drive.length_m, dubins_length(start, goal, kRadius) - 1e-9);
+  EXPECT_LE(way.drive.length_m, 1.15 * (72.0 + 45.0));  // no great detour from along the road
 }
 
 TEST(LaneGraph, TheWayLookingBackIsAsLong) {
@@ -63,8 +64,8 @@ TEST(LaneGraph, TheWayLookingBackIsAsLong) {
     for (int b = 0; b < net.graph.nodes(); b += 11) {
       LaneGraph::Search back(net.graph);
       back.run({{b ^ 1, {}, {}}});
-      const double ab = there.to({{b ^ 1, {}, {}}}).length;
-      const double ba = back.to({{a, {}, {}}}).length;
+      const double ab = there.to({{b ^ 1, {}, {}}}).cost;
+      const double ba = back.to({{a, {}, {}}}).cost;
       if (std::isinf(ab)) {
         EXPECT_TRUE(std::isinf(ba));
       } else {
@@ -89,7 +90,7 @@ TEST(LaneGraph, APoseIsLeftLookingBackWhereThereIsRoomToTurnRound) {
       const WayCost way = search.to(looking_back);
       if (std::isinf(way.cost)) continue;
       ++turned;
-      EXPECT_LE(way.length, (reverses ? 1.0 : 7.0 / 3.0) * kPi * kRadius + 100.0);
+      EXPECT_LE(way.drive.length_m, (reverses ? 1.0 : 7.0 / 3.0) * kPi * kRadius + 100.0);
       const Path path = search.path_to(net.graph.pose(node), {{node, {}, {}}}, looking_back);
       const Pose2 back = reversed(net.graph.pose(node));
       EXPECT_NEAR((path.end_pose().position() - back.position()).norm(), 0.0, 1e-6);

@@ -52,7 +52,8 @@ struct Timed {
 
 Timed timed_build(const Farm& farm, const Vehicle& vehicle) {
   const auto begin = std::chrono::steady_clock::now();
-  Result<Transitions> ways = Transitions::build(farm, farm.all_rows(), stops_of(farm), vehicle);
+  Result<Transitions> ways =
+      Transitions::build(farm, Ground(), farm.all_rows(), stops_of(farm), vehicle);
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   if (!ways) throw std::runtime_error(to_string(ways.error()));
   return {std::move(*ways), taken.count()};

@@ -35,7 +35,8 @@ TransitionOptions shortest() {
 
 Transitions built(const Farm& farm, const std::vector<Site>& stops, const Vehicle& vehicle,
                   const TransitionOptions& options = {}) {
-  Result<Transitions> result = Transitions::build(farm, farm.all_rows(), stops, vehicle, options);
+  Result<Transitions> result =
+      Transitions::build(farm, Ground(), farm.all_rows(), stops, vehicle, options);
   if (!result) throw std::runtime_error(to_string(result.error()));
   return std::move(*result);
 }
@@ -207,7 +208,8 @@ TEST(Transitions, ATooNarrowHeadlandIsAnErrorThatSaysWhere) {
   const Farm farm = make_field({6, 40.0, 2.5, 3.5, 1.0, 0.0});
   Vehicle vehicle = tractor();
   vehicle.can_reverse = false;
-  const Result<Transitions> result = Transitions::build(farm, farm.all_rows(), {}, vehicle);
+  const Result<Transitions> result =
+      Transitions::build(farm, Ground(), farm.all_rows(), {}, vehicle);
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::kTurnDoesNotFit);
   for (const char* part :
@@ -219,7 +221,8 @@ TEST(Transitions, ATooNarrowHeadlandIsAnErrorThatSaysWhere) {
 
 TEST(Transitions, AVehicleWiderThanTheRowsIsAnError) {
   const Farm farm = make_field({6, 40.0, 1.4, 20.0, 5.0, 0.0});
-  const Result<Transitions> result = Transitions::build(farm, farm.all_rows(), {}, tractor());
+  const Result<Transitions> result =
+      Transitions::build(farm, Ground(), farm.all_rows(), {}, tractor());
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, ErrorCode::kTurnDoesNotFit);
   EXPECT_NE(result.error().what.find("row p/p.1 is 1.40 m wide, the vehicle 1.50 m"),
@@ -277,8 +280,8 @@ TEST(Transitions, StopsWithoutAnyRowAreJoinedToo) {
   farm.keep_outs.push_back({"barn", {{{25.0, 0.0}, {35.0, 0.0}, {35.0, 25.0}, {25.0, 25.0}}, {}}});
   const Pose2 west{10.0, 10.0, 1.0};
   const Pose2 east{50.0, 8.0, 0.0};
-  const Result<Transitions> ways =
-      Transitions::build(farm, {}, {{west, west, "west"}, {east, east, "east"}}, tractor());
+  const Result<Transitions> ways = Transitions::build(
+      farm, Ground(), {}, {{west, west, "west"}, {east, east, "east"}}, tractor());
   ASSERT_TRUE(ways.has_value());
   OutlineChecker checker(farm, {}, 0.0, tractor().footprint);
   for (const auto& [from, to] : {std::pair(0, 1), std::pair(1, 0)}) {
@@ -342,7 +345,8 @@ TEST(Transitions, TwoBuildsAreEqualToTheLastBit) {
 TEST(Transitions, RowsLeftOutOfTheTaskAreStillInTheWay) {
   const Farm farm = make_field({9, 40.0, 2.5, 12.0, 8.0, 0.0});
   const std::vector<Row> all = all_rows(farm);
-  const Result<Transitions> ways = Transitions::build(farm, {{0, 0}, {0, 8}}, {}, tracked_robot());
+  const Result<Transitions> ways =
+      Transitions::build(farm, Ground(), {{0, 0}, {0, 8}}, {}, tracked_robot());
   ASSERT_TRUE(ways.has_value());
   OutlineChecker checker(farm, all, 2.5, tracked_robot().footprint);
   EXPECT_EQ(checker.complaint(ways->path(0, 2), {0, 8}), "");

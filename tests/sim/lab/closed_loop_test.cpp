@@ -16,7 +16,11 @@ Vehicle rover() {
   vehicle.work_speed_mps = 1.0;
   vehicle.transit_speed_mps = 1.0;
   vehicle.turn_speed_mps = 1.0;
-  vehicle.battery = {100.0, 0.1, 50.0, 500.0, 300.0};
+  vehicle.battery.capacity_wh = 100.0;
+  vehicle.battery.reserve_soc = 0.1;
+  vehicle.energy.mass_kg = 600.0;
+  vehicle.energy.base_power_w = 50.0;
+  vehicle.energy.implement_power_w = 200.0;
   return vehicle;
 }
 
@@ -42,9 +46,13 @@ VehiclePlan two_rows(double start_soc = 1.0) {
   return plan;
 }
 
+Run drive_plan(const VehiclePlan& plan, const SimulationConfig& config = {}) {
+  return drive_fleet({plan}, {}, Farm{}, Ground(), config).vehicles.front();
+}
+
 TEST(ClosedLoop, DrivesAllRowsCloseToThePathAtTheEnergyPlanned) {
   const VehiclePlan plan = two_rows();
-  const auto run = drive_plan(plan, Farm{}, {});
+  const auto run = drive_plan(plan);
   EXPECT_TRUE(run.metrics.completed) << run.metrics.reason;
   EXPECT_EQ(run.metrics.rows_done, 2);
   EXPECT_EQ(run.metrics.rows_total, 2);
@@ -56,14 +64,14 @@ TEST(ClosedLoop, DrivesAllRowsCloseToThePathAtTheEnergyPlanned) {
 }
 
 TEST(ClosedLoop, FallingBelowTheReserveIsNotASuccess) {
-  const auto run = drive_plan(two_rows(0.11), Farm{}, {});
+  const auto run = drive_plan(two_rows(0.11));
   EXPECT_FALSE(run.metrics.completed);
   EXPECT_FALSE(run.metrics.reserve_kept);
   EXPECT_NE(run.metrics.reason.find("below the reserve"), std::string::npos) << run.metrics.reason;
 }
 
 TEST(ClosedLoop, AnEmptyBatteryEndsTheRunOnTheRowItStopsIn) {
-  const auto run = drive_plan(two_rows(0.03), Farm{}, {});
+  const auto run = drive_plan(two_rows(0.03));
   EXPECT_FALSE(run.metrics.completed);
   EXPECT_EQ(run.metrics.rows_done, 0);
   EXPECT_NE(run.metrics.reason.find("the battery is empty"), std::string::npos)
@@ -75,7 +83,7 @@ TEST(ClosedLoop, ARowDrivenOffItsLineIsNotDone) {
   SimulationConfig config;
   config.row_tolerance_m = 1e-6;
   config.sensors.position_accuracy_m = 0.05;
-  const auto run = drive_plan(two_rows(), Farm{}, config);
+  const auto run = drive_plan(two_rows(), config);
   EXPECT_FALSE(run.metrics.completed);
   EXPECT_EQ(run.metrics.rows_done, 0);
 }
@@ -83,10 +91,10 @@ TEST(ClosedLoop, ARowDrivenOffItsLineIsNotDone) {
 TEST(ClosedLoop, SameSeedSameTraceOtherSeedOtherTrace) {
   SimulationConfig config;
   config.sensors.position_accuracy_m = 0.02;
-  const auto a = drive_plan(two_rows(), Farm{}, config);
-  const auto b = drive_plan(two_rows(), Farm{}, config);
+  const auto a = drive_plan(two_rows(), config);
+  const auto b = drive_plan(two_rows(), config);
   config.seed = 2;
-  const auto c = drive_plan(two_rows(), Farm{}, config);
+  const auto c = drive_plan(two_rows(), config);
   ASSERT_EQ(a.trace.size(), b.trace.size());
   bool differs = false;
   for (std::size_t i = 0; i < a.trace.size(); ++i) {
@@ -95,6 +103,45 @@ TEST(ClosedLoop, SameSeedSameTraceOtherSeedOtherTrace) {
     differs = differs || i >= c.trace.size() || a.trace[i].y_m != c.trace[i].y_m;
   }
   EXPECT_TRUE(differs);
+}
+
+// Five metres to a charger, a charge, five metres on.
+VehiclePlan by_way_of_charger(const char* id, double y) {
+  VehiclePlan plan;
+  plan.id = id;
+  plan.vehicle = rover();
+  plan.start = {0.0, y, 0.0};
+  plan.start_soc = 0.5;
+  const DriveCost drive = drive_cost(plan.vehicle, LegKind::kTransit, 5.0);
+  plan.legs = {{LegKind::kTransit, "there", drive, 0.5, 0},
+               {LegKind::kCharge, "c", {0.0, 36.0, 0.0, 0.0}, 0.6, 0},
+               {LegKind::kTransit, "on", drive, 0.6, 0}};
+  plan.stages.resize(2);
+  plan.stages[0].path.append_straight(plan.start, 5.0, 0);
+  plan.stages[0].stop_leg = 1;
+  plan.stages[1].path.append_straight({5.0, y, 0.0}, 5.0, 2);
+  return plan;
+}
+
+TEST(ClosedLoop, VehiclesQueueForTheSlotOfACharger) {
+  Farm farm;
+  farm.chargers.push_back({"c", {5.0, 0.0, 0.0}, ChargeCurve(1000.0), 1});
+  const std::vector<VehiclePlan> plans{by_way_of_charger("a", 0.0), by_way_of_charger("b", 2.0)};
+  const FleetRun one_slot = drive_fleet(plans, {}, farm, Ground(), {});
+  EXPECT_TRUE(one_slot.metrics.completed) << one_slot.metrics.reason;
+  EXPECT_EQ(one_slot.metrics.charges, 2);
+  EXPECT_EQ(one_slot.vehicles[0].metrics.waited_s, 0.0);
+  // 10 % of 100 Wh and what the way took, at 1 kW.
+  EXPECT_NEAR(one_slot.vehicles[1].metrics.waited_s, 36.0, 8.0);
+  farm.chargers.front().slots = 2;
+  const FleetRun two_slots = drive_fleet(plans, {}, farm, Ground(), {});
+  EXPECT_EQ(two_slots.metrics.waited_s, 0.0);
+  EXPECT_LT(two_slots.metrics.duration_s, one_slot.metrics.duration_s);
+  const std::vector<FleetTick> ticks = fleet_ticks(one_slot, 0.1);
+  for (std::size_t i = 1; i < ticks.size(); ++i) {
+    EXPECT_LE(one_slot.vehicles[ticks[i - 1].vehicle].trace[ticks[i - 1].tick].t_s,
+              one_slot.vehicles[ticks[i].vehicle].trace[ticks[i].tick].t_s);
+  }
 }
 
 TEST(TraceTicks, KeepFirstAndLastAndThePeriod) {

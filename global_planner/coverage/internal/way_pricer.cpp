@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "global_planner/coverage/internal/way_pricer.hpp"
+
+#include <algorithm>
+
+namespace headland::coverage {
+
+std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind, int cusps) const {
+  if (path.empty()) return DriveCost{};
+  const int within = static_cast<int>(path.segments().size()) - 1;
+  if (ground_.uniform()) return drive_cost(vehicle_, kind, path.length(), std::max(within, cusps));
+  if (!ground_.flat() && check_slopes(vehicle_, ground_, path)) return std::nullopt;
+  const Result<DriveCost> cost = path_cost(vehicle_, ground_, path, kind);
+  if (!cost) return std::nullopt;
+  const double standing = std::max(0, cusps - within) * vehicle_.gear_change_s;
+  const double energy = standing * vehicle_.energy.base_power_w;
+  return *cost + DriveCost{0.0, standing, energy, energy};
+}
+
+double WayPricer::potential(const Point2& at) const {
+  if (objective_.per_j == 0.0 || ground_.flat()) return 0.0;
+  const auto sample = ground_.sample(at);
+  const EnergyModel& energy = vehicle_.energy;
+  const double per_metre = energy.recuperation_efficiency_ratio * energy.total_mass() * kGravity;
+  return sample ? per_metre * sample->height : 0.0;
+}
+
+}  // namespace headland::coverage
