@@ -31,6 +31,7 @@ constexpr long kExactEffort = 60'000'000;  // labels
 constexpr std::size_t kLongestExactRoute = 100;
 // Where routes are long a round takes more labels; anneals get shorter for it.
 constexpr long kLabelsPerRound = 4'000;
+constexpr int kMostParts = 12;
 constexpr int kMostPricedTasks = 200;
 constexpr long kRoundsForExact = 2'000;  // of ruin and recreate, for the upper bound
 constexpr long kFirstAnneal = 20'000;
@@ -127,8 +128,7 @@ class Search {
     RuinRecreate search(model_, near, plan, options_.seed, control);
     const long rounds = budget();
     search.expect(2 * rounds);
-    if (order_.empty() || !plan.set_route(0, order_)) search.construct();
-    plan.keep();
+    start(plan, search);
     if (!search.place_all(rounds)) {
       find_exactly();
       return;
@@ -155,6 +155,59 @@ class Search {
     if (options_.iterations > 0) return options_.iterations;
     return usual_budget();
   }
+  // A first plan: the order that is best for one vehicle, in equal parts for each number of
+  // vehicles (route first, cluster second; Beasley 1983), or, where there is none, greedy
+  // insertion.
+  void start(FleetPlan& plan, RuinRecreate& search) {
+    if (order_.empty() && model_.most_modes() > 1 && !model_.windows()) order_ = common_order();
+    double least = kNever;
+    std::vector<std::vector<Visit>> best;
+    for (int parts = 1; !order_.empty() && parts <= std::min(plan.vehicles(), kMostParts);
+         ++parts) {
+      set_parts(plan, parts);
+      search.construct();
+      const double cost = search.complete() ? plan.cost() : kNever;
+      if (cost >= least) continue;
+      least = cost;
+      best = plan.visits();
+    }
+    plan.restore(std::vector<std::vector<Visit>>(static_cast<std::size_t>(plan.vehicles())));
+    if (least < kNever) {
+      plan.restore(best);
+    } else {
+      search.construct();
+    }
+  }
+
+  std::vector<Visit> common_order() const {
+    TourProblem single = problem_;
+    single.vehicles.resize(1);
+    std::vector<Visit> visits;
+    if (const auto order = tour::solve_order(single, options_)) {
+      for (const auto& [task, mode] : order->visits) visits.push_back({task, mode});
+    }
+    return visits;
+  }
+
+  // Consecutive parts of equal price; what its vehicle cannot do is left to be inserted.
+  void set_parts(FleetPlan& plan, int parts) const {
+    std::vector<double> price{0.0};  // up to each visit of the order
+    int site = model_.kind(0).vehicle.start;
+    for (const Visit visit : order_) {
+      price.push_back(price.back() + model_.price(model_.way(0, site, model_.mode(visit).entry)) +
+                      model_.price(model_.work(0, visit)));
+      site = model_.mode(visit).exit;
+    }
+    std::vector<std::vector<Visit>> visits(static_cast<std::size_t>(parts));
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const double share = price[i + 1] / std::max(price.back(), 1e-12);
+      const int part = std::clamp(static_cast<int>(share * parts - 1e-9), 0, parts - 1);
+      visits[static_cast<std::size_t>(part)].push_back(order_[i]);
+    }
+    visits.resize(static_cast<std::size_t>(plan.vehicles()));
+    plan.restore(visits);
+  }
+
   long usual_budget() const { return 20'000 + 400L * model_.tasks(); }
 
   // True if the best is proven.

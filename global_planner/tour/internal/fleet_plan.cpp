@@ -58,7 +58,6 @@ FleetPlan::FleetPlan(const Model& model, const NearTasks& near)
   itineraries_.resize(routes_.size());
   const auto fleet = static_cast<double>(routes_.size());
   if (routes_.size() > 1) finish_price_ = kFinishShare * model.problem().span_weight / fleet;
-  if (model.cost_slack() == 0.0 && model.duration_price() == 0.0) tie_price_ = 1e-6;
 }
 
 double FleetPlan::latest_finish() const {
@@ -167,8 +166,11 @@ void FleetPlan::collect_at(const RouteState& route, int vehicle, int position, i
       const double done = std::max(arrival, t.earliest_s) + work.duration_s + onward.duration_s;
       if (done > route.latest_s[p]) continue;
     }
-    const double change =
-        price(there) + price(work) + price(onward) - price(model_.way(route.kind, from, to));
+    const Visit visit{task, mode};
+    const double change = model_.most_modes() > 1
+                              ? evaluator_.price_of_insertion(route, position, visit)
+                              : model_.price(there) + model_.price(work) + model_.price(onward) -
+                                    model_.price(model_.way(route.kind, from, to));
     if (std::isfinite(change) || !kind.detours_never_pay) {
       candidates_.push_back({change, vehicle, position, mode});
     }
@@ -182,14 +184,30 @@ void FleetPlan::try_candidates(int task, Insertion& best) {
                     candidates_.end(), cheaper);
   for (std::size_t i = 0; i < sorted; ++i) {
     const Candidate& c = candidates_[i];
-    if (best.place.vehicle >= 0 && (i >= kFirstTries || c.change >= best.change)) return;
+    if (best.vehicle >= 0 && (i >= kFirstTries || c.change >= best.change)) return;
     const RouteState& r = route(c.vehicle);
     const Visit visit{task, c.mode};
-    const auto outcome = evaluator_.evaluate(r, {c.position, c.position, {&visit, 1}});
-    if (!outcome) continue;
-    const double change = change_of(r, *outcome);
-    if (change < best.change) best = {{c.vehicle, c.position}, c.mode, change};
+    if (model_.most_modes() > 1 &&
+        try_edit(c.vehicle, evaluator_.insertion(r, c.position, visit, edit_visits_), best)) {
+      continue;
+    }
+    try_edit(c.vehicle, {c.position, c.position, {&visit, 1}}, best);
   }
+}
+
+// Takes the edit if it is the best so far. False if it cannot be driven.
+bool FleetPlan::try_edit(int vehicle, const RouteEdit& edit, Insertion& best) {
+  const RouteState& r = route(vehicle);
+  const std::optional<RouteOutcome> outcome = evaluator_.evaluate(r, edit);
+  if (!outcome) return false;
+  const double change = change_of(r, *outcome);
+  if (change >= best.change) return true;
+  best.vehicle = vehicle;
+  best.first = edit.first;
+  best.last = edit.last;
+  best.visits.assign(edit.visits.begin(), edit.visits.end());
+  best.change = change;
+  return true;
 }
 
 void FleetPlan::try_new_routes(int task, Insertion& best) {
@@ -201,23 +219,19 @@ void FleetPlan::try_new_routes(int task, Insertion& best) {
     if (idle == kind.members.end()) continue;
     for (int mode = 0; mode < model_.modes(task); ++mode) {
       const Visit visit{task, mode};
-      const double least = kind.vehicle.fixed_cost +
-                           price(model_.way(k, kind.vehicle.start, model_.mode(visit).entry)) +
-                           price(model_.work(k, visit)) +
-                           price(model_.way(k, model_.mode(visit).exit, kind.vehicle.finish));
-      if (least >= best.change && best.place.vehicle >= 0) continue;
-      const auto outcome = evaluator_.evaluate(route(*idle), {0, 0, {&visit, 1}});
-      if (!outcome) continue;
-      const double change = change_of(route(*idle), *outcome);
-      if (change < best.change) best = {{*idle, 0}, mode, change};
+      const double least =
+          kind.vehicle.fixed_cost +
+          model_.price(model_.way(k, kind.vehicle.start, model_.mode(visit).entry)) +
+          model_.price(model_.work(k, visit)) +
+          model_.price(model_.way(k, model_.mode(visit).exit, kind.vehicle.finish));
+      if (least >= best.change && best.vehicle >= 0) continue;
+      try_edit(*idle, {0, 0, {&visit, 1}}, best);
     }
   }
 }
 
-bool FleetPlan::insert(int task, const Insertion& insertion) {
-  const Visit visit{task, insertion.mode};
-  const int position = insertion.place.position;
-  return edit(insertion.place.vehicle, {position, position, {&visit, 1}});
+bool FleetPlan::insert(const Insertion& insertion) {
+  return edit(insertion.vehicle, {insertion.first, insertion.last, insertion.visits});
 }
 
 bool FleetPlan::remove(int vehicle, const std::vector<int>& positions) {

@@ -21,9 +21,13 @@ class FleetPlan {
     int vehicle = -1;  ///< -1: the task is absent
     int position = 0;
   };
+  /// Visits of a route that take the place of others: the task, and visits whose modes change for
+  /// it.
   struct Insertion {
-    Place place;
-    int mode = 0;
+    int vehicle = -1;  ///< -1: the task can be put nowhere
+    int first = 0;
+    int last = 0;
+    std::vector<Visit> visits;
     double change = kNever;  ///< of the cost
   };
 
@@ -49,7 +53,7 @@ class FleetPlan {
   /// The cheapest insertion of an absent task, by exact evaluation of those that look best without
   /// charging; each position is overlooked with probability `blink`.
   Insertion best_insertion(int task, double blink, RandomStream& random);
-  bool insert(int task, const Insertion& insertion);
+  bool insert(const Insertion& insertion);
   /// Takes out tasks (all of one vehicle, positions ascending). False, and unchanged, if the rest
   /// cannot be driven.
   bool remove(int vehicle, const std::vector<int>& positions);
@@ -75,12 +79,10 @@ class FleetPlan {
     std::optional<Itinerary> itinerary;
   };
 
-  double price(const TourLeg& leg) const {
-    return leg.cost + model_.duration_price() * leg.duration_s + tie_price_ * leg.duration_s;
-  }
   void collect(int task, double blink, RandomStream& random);
   void collect_at(const RouteState& route, int vehicle, int position, int task);
   void try_candidates(int task, Insertion& best);
+  bool try_edit(int vehicle, const RouteEdit& edit, Insertion& best);
   void try_new_routes(int task, Insertion& best);
   double change_of(const RouteState& route, const RouteOutcome& outcome) const;
   double search_value(double value, double finish_s) const {
@@ -102,7 +104,6 @@ class FleetPlan {
   int used_ = 0;
   int most_vehicles_;
   double finish_price_ = 0.0;  // of each vehicle's finishing time, where the span counts
-  double tie_price_ = 0.0;     // of time, where ways cost nothing
   double span_ = 0.0;          // latest finish when the insertion search began
   std::vector<Backup> backups_;
   std::size_t backup_count_ = 0;

@@ -9,6 +9,7 @@ namespace headland::tour {
 namespace {
 
 constexpr double kRounding = 1e-10;  // share of a typical value that sums may be off by
+constexpr double kTiePrice = 1e-6;   // of a second
 
 bool same(const ChargeFunction& a, const ChargeFunction& b) {
   return std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
@@ -111,6 +112,10 @@ void Model::measure() {
     if (vehicle.latest_s < kNever) time = std::max(time, vehicle.latest_s);
   }
   cost_slack_ = kRounding * cost;
+  if (cost == 0.0 && duration_price_ == 0.0) tie_price_ = kTiePrice;
+  for (const TourTask& task : problem_->tasks) {
+    most_modes_ = std::max(most_modes_, static_cast<int>(task.modes.size()));
+  }
   time_slack_ = kRounding * time;
 }
 

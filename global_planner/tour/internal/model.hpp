@@ -65,6 +65,12 @@ class Model {
   /// Price of a vehicle's second in the search: the duration's weight and, for a single vehicle,
   /// the span's; several vehicles share it. [objective's unit / s]
   double duration_price() const { return duration_price_; }
+  /// What a leg is worth in the search, but for charging and waiting.
+  double price(const TourLeg& leg) const {
+    return leg.cost + (duration_price_ + tie_price_) * leg.duration_s;
+  }
+  /// Most modes of any task.
+  int most_modes() const { return most_modes_; }
   /// Vehicles may have to queue: charging takes time and some station has fewer slots than comers.
   bool may_queue() const { return may_queue_; }
   /// Differences below these are rounding.
@@ -88,6 +94,8 @@ class Model {
   bool time_is_cost_ = false;
   bool may_queue_ = false;
   double duration_price_ = 0.0;
+  double tie_price_ = 0.0;  // of time, where ways cost nothing
+  int most_modes_ = 1;
   double cost_slack_ = 0.0;
   double time_slack_ = 0.0;
 };

@@ -66,6 +66,7 @@ bool RouteEvaluator::apply(RouteState& route, const RouteEdit& edit) {
     next.finish_s = outcome->finish_s;
   }
   look_ahead(next);
+  price_modes(next);
   std::swap(route, next);
   return true;
 }

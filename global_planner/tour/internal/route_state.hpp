@@ -34,6 +34,12 @@ struct RouteState {
   /// without any station.
   std::vector<double> need_j;
   std::vector<double> latest_s;
+  /// The price of the ways and works before and from each visit on, by its mode, if all other
+  /// visits take their best modes (Vidal 2017: choices of mode by dynamic programming over a given
+  /// order). Empty where every task has one mode.
+  std::vector<double> until_mode;
+  std::vector<double> from_mode;
+  double price = 0.0;  ///< of all ways and works, as they are
   double load = 0.0;
   double value = 0.0;     ///< its part of the objective, but for the span
   double finish_s = 0.0;  ///< [s]
@@ -62,6 +68,12 @@ class RouteEvaluator {
   RouteState empty_route(int kind) const;
   /// What an edit would lead to; nothing if the route cannot be driven any more.
   std::optional<RouteOutcome> evaluate(const RouteState& route, const RouteEdit& edit);
+  /// The insertion of a visit at a position, with the modes of all other visits that are best for
+  /// it, batteries and windows not looked at: the change of price, and the edit (its visits are
+  /// stored in `visits`).
+  double price_of_insertion(const RouteState& route, int position, Visit visit) const;
+  RouteEdit insertion(const RouteState& route, int position, Visit visit,
+                      std::vector<Visit>& visits) const;
   /// Makes the edit. False, with the route unchanged, if it cannot be driven any more.
   bool apply(RouteState& route, const RouteEdit& edit);
   Crossing& crossing(int kind) { return crossings_[static_cast<std::size_t>(kind)]; }
@@ -83,6 +95,9 @@ class RouteEvaluator {
   void load(const RouteState& route, const RouteState::Cell& cell);
   void store(RouteState& route, const Base& base) const;
   void look_ahead(RouteState& route);
+  void price_modes(RouteState& route) const;
+  int best_before(const RouteState& route, int position, int entry, double& price) const;
+  int best_behind(const RouteState& route, int position, int exit, double& price) const;
   void look_ahead(const RouteState& route, const RouteEdit& edit);
 
   const Model& model_;

@@ -278,8 +278,8 @@ void RuinRecreate::recreate(double blink) {
   sort_absent();
   for (const int task : absent_) {
     const FleetPlan::Insertion best = plan_.best_insertion(task, blink, random_);
-    if (best.place.vehicle >= 0 && best.change < model_.task(task).reward) {
-      plan_.insert(task, best);
+    if (best.vehicle >= 0 && best.change < model_.task(task).reward) {
+      plan_.insert(best);
     }
   }
   std::erase_if(absent_, [&](int task) { return !plan_.absent(task); });

@@ -24,6 +24,8 @@ class RuinRecreate {
 
   /// Inserts all absent tasks that can be.
   void construct();
+  /// No task that must be done is absent.
+  bool complete() const { return missing().empty(); }
   /// Tries to place every task that must be done, in this many rounds. True if that is so.
   bool place_all(long rounds);
   /// Tries to do without one vehicle after the other, in this many rounds each.
