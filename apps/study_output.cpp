@@ -59,7 +59,10 @@ std::string cells_text(const StudyResult& result) {
   std::string text;
   for (const StudyCell& cell : result.cells) {
     text += fmt::format("{:<32}", cell.name);
-    for (const auto& [metric, s] : cell.metrics) text += fmt::format(" {}={:.5g}", metric, s.mean);
+    for (const auto& [metric, s] : cell.metrics) {
+      text += fmt::format(" {}={:.5g}", metric, s.mean);
+      if (s.ci_low && s.ci_high) text += fmt::format(" [{:.5g}, {:.5g}]", *s.ci_low, *s.ci_high);
+    }
     text += "\n";
   }
   return text;

@@ -23,6 +23,10 @@ Error with_task_name(Error error, const mission::TourModel& model) {
   }
   if (end == begin || end - begin > 7) return error;
   const int task = std::stoi(error.what.substr(begin, end - begin));
+  if (error.code == ErrorCode::kNoPath) {
+    error.remedy = "join it by a road or gate that is wide enough, use a smaller vehicle, or leave it "
+                   "out";
+  }
   if (task < static_cast<int>(model.tasks().size())) {
     error.what.replace(at, end - at, model.task_name(task));
   }

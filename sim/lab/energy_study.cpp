@@ -150,8 +150,8 @@ StudyCell tour_cell(const std::string& name, const std::vector<Pair>& pairs,
   return cell;
 }
 
-StudyCell saving_cell(const std::vector<Pair>& pairs) {
-  StudyCell cell{"saving", static_cast<int>(pairs.size())};
+StudyCell saving_cell(const std::string& name, const std::vector<Pair>& pairs) {
+  StudyCell cell{name, static_cast<int>(pairs.size())};
   std::vector<double> energy;
   std::vector<double> length;
   for (const Pair& pair : pairs) {
@@ -163,7 +163,7 @@ StudyCell saving_cell(const std::vector<Pair>& pairs) {
   return cell;
 }
 
-Plot saving_plot(const std::vector<Pair>& pairs) {
+Plot saving_plot(const std::string& title, const std::vector<Pair>& pairs) {
   PlotSeries shortest{"shortest tour"};
   PlotSeries least{"tour of least energy"};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -172,21 +172,18 @@ Plot saving_plot(const std::vector<Pair>& pairs) {
     least.x.push_back(static_cast<double>(i + 1));
     least.y.push_back(pairs[i].least_energy.cost.energy_j / 3600.0);
   }
-  return {"Energy of both tours, terrain by terrain",
+  return {"Energy of both tours, terrain by terrain: " + title,
           "terrain",
           "energy [Wh]",
           {std::move(shortest), std::move(least)}};
 }
 
-}  // namespace
-
-Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) {
+Result<std::vector<Pair>> all_pairs(const EnergyStudyConfig& config, int jobs) {
   std::vector<Pair> pairs(static_cast<std::size_t>(config.runs_count));
   std::vector<std::optional<Error>> errors(pairs.size());
   parallel_for(config.runs_count, jobs, [&](int run) {
     const auto i = static_cast<std::size_t>(run);
-    const Pasture pasture(config, run);
-    const auto tours = pasture.tours();
+    const auto tours = Pasture(config, run).tours();
     if (tours) {
       pairs[i] = *tours;
     } else {
@@ -198,10 +195,24 @@ Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) 
     errors[i]->what = fmt::format("terrain {}: {}", i + 1, errors[i]->what);
     return tl::unexpected<Error>(*errors[i]);
   }
+  return pairs;
+}
+
+}  // namespace
+
+Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) {
   StudyResult result{config.study};
-  result.cells = {saving_cell(pairs), tour_cell("tour/energy", pairs, &Pair::least_energy),
-                  tour_cell("tour/length", pairs, &Pair::shortest)};
-  result.plots = {saving_plot(pairs)};
+  for (const double ratio : config.recuperation_ratios) {
+    EnergyStudyConfig with = config;
+    with.vehicle.energy.recuperation_efficiency_ratio = ratio;
+    const auto pairs = all_pairs(with, jobs);
+    if (!pairs) return tl::unexpected<Error>(pairs.error());
+    const std::string name = fmt::format("recuperation_{}", ratio);
+    result.cells.push_back(saving_cell(name + "/saving", *pairs));
+    result.cells.push_back(tour_cell(name + "/tour/energy", *pairs, &Pair::least_energy));
+    result.cells.push_back(tour_cell(name + "/tour/length", *pairs, &Pair::shortest));
+    result.plots.push_back(saving_plot(name, *pairs));
+  }
   return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/base/result.hpp"
 #include "core/config/visit.hpp"
@@ -18,12 +19,14 @@ struct EnergyStudyConfig {
   std::string study = "energy";
   int seed = 1;
   int runs_count = 20;          ///< terrains
-  double side_m = 400.0;        ///< of the square pasture
+  double side_m = 500.0;        ///< of the square pasture
   int goals_count = 10;         ///< and a charger, where the tour begins and ends
   double relief_m = 30.0;       ///< highest less lowest point
-  double wavelength_m = 200.0;  ///< of the largest hills
+  double wavelength_m = 150.0;  ///< of the largest hills
   double cell_m = 2.0;          ///< of the terrain
-  int samples_count = 1500;     ///< poses of the roadmap
+  int samples_count = 4000;     ///< poses of the roadmap
+  /// The vehicle with these recuperation efficiencies; many field robots have none.
+  std::vector<double> recuperation_ratios = {0.0, 0.3, 0.6};
   Vehicle vehicle;
 
   template <class V>
@@ -37,13 +40,16 @@ struct EnergyStudyConfig {
     v("wavelength_m", wavelength_m, config::Range{10.0, 5000.0}, "Of the largest hills [m]");
     v("cell_m", cell_m, config::Range{0.1, 50.0}, "Of the terrain [m]");
     v("samples_count", samples_count, config::Range{10, 100000}, "Poses of the roadmap");
+    v("recuperation_ratios", recuperation_ratios, config::kFraction,
+      "Recuperation efficiencies of the vehicle, a group of cells each");
     v("vehicle", vehicle, "Who drives");
   }
 };
 
-/// Cells `tour/energy`, `tour/length` (energy_j, length_m, climb_m) and `saving` (energy_ratio:
-/// what the tour of least energy uses less, over what the shortest uses; length_ratio: what it is
-/// longer). `jobs` terrains at once; deterministic whatever their number.
+/// For each recuperation efficiency E the cells `recuperation_E/saving` (energy_ratio: what the
+/// tour of least energy uses less, over what the shortest uses; length_ratio: what it is longer),
+/// `recuperation_E/tour/energy` and `recuperation_E/tour/length` (energy_j, length_m, climb_m).
+/// `jobs` terrains at once; deterministic whatever their number.
 Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs = 1);
 
 }  // namespace headland

@@ -11,6 +11,7 @@ namespace {
 // Christiaens and Vanden Berghe 2020, Table 1: tasks removed on average, longest string, share of
 // split strings, their growth, and blinks.
 constexpr double kRemovedOnAverage = 10.0;
+constexpr double kRemovedShare = 0.4;  // of all tasks at most, where there are few
 constexpr double kLongestString = 10.0;
 constexpr double kSplitShare = 0.5;
 constexpr double kSplitGrowth = 0.01;
@@ -194,8 +195,10 @@ void RuinRecreate::ruin() {
   const int absent = static_cast<int>(absent_.size());
   const int routes = std::max(1, plan_.used_vehicles());
   const double mean_size = static_cast<double>(n - absent) / routes;
-  const double longest = std::max(1.0, std::min(kLongestString, mean_size));
-  const double most_strings = 4.0 * kRemovedOnAverage / (1.0 + longest) - 1.0;
+  const double longest =
+      std::max(1.0, std::min({kLongestString, mean_size, 2.0 * kRemovedShare * n}));
+  const double removed_tasks = std::min(kRemovedOnAverage, 1.0 + kRemovedShare * n);
+  const double most_strings = std::max(1.0, 4.0 * removed_tasks / (1.0 + longest) - 1.0);
   const int strings = static_cast<int>(random_.uniform(1.0, most_strings + 1.0));
   std::vector<int> ruined;
   const int seed = random_.index(n);
