@@ -19,6 +19,7 @@ constexpr double kBlink = 0.01;
 // Temperatures, in mean costs of a way to a near task (theirs are 100 and 1 on a 1000 x 1000 grid).
 constexpr double kHot = 1.0;
 constexpr double kCold = 0.01;
+constexpr double kGenerousShare = 0.2;
 constexpr long kPollEvery = 100;
 
 double temperature_unit(const Model& model, const NearTasks& near) {
@@ -279,9 +280,12 @@ void RuinRecreate::recreate(double blink) {
     if (plan_.absent(t)) absent_.push_back(t);
   }
   sort_absent();
+  // What does not pay by itself may pay with others: now and then it is put in all the same.
+  const bool generous = blink > 0.0 && random_.uniform() < kGenerousShare;
+  const double worth = generous ? 1.0 / (1.0 - random_.uniform()) : 1.0;
   for (const int task : absent_) {
     const FleetPlan::Insertion best = plan_.best_insertion(task, blink, random_);
-    if (best.vehicle >= 0 && best.change < model_.task(task).reward) {
+    if (best.vehicle >= 0 && best.change < worth * model_.task(task).reward) {
       plan_.insert(best);
     }
   }
