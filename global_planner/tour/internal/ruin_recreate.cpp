@@ -19,7 +19,7 @@ constexpr double kBlink = 0.01;
 // Temperatures, in mean costs of a way to a near task (theirs are 100 and 1 on a 1000 x 1000 grid).
 constexpr double kHot = 1.0;
 constexpr double kCold = 0.01;
-constexpr double kGenerousShare = 0.2;
+constexpr double kGenerousShare = 0.1;
 constexpr long kPollEvery = 100;
 
 double temperature_unit(const Model& model, const NearTasks& near) {

@@ -27,12 +27,9 @@ struct Solved {
   TourSolution solution;
 };
 
-// `iterations`: 0 for what suits the size.
-Solved solved(const fs::path& file, long iterations = 0) {
+Solved solved(const fs::path& file) {
   Solved answer{load_instance(file).value(), {}};
-  TourOptions options;
-  options.iterations = iterations;
-  answer.solution = solve_tour(answer.instance.problem, options).value();
+  answer.solution = solve_tour(answer.instance.problem).value();
   EXPECT_EQ(check_solution(answer.instance.problem, answer.solution).value_or(""), "") << file;
   return answer;
 }
@@ -100,7 +97,7 @@ TEST(PublishedInstances, OrienteeringScoresAreReached) {
       {"ChaoSet_64/set_64_1_65", 1116},
   };
   for (const auto& [file, best] : known) {
-    const Solved answer = solved(*folder / (std::string(file) + ".txt"), 3000);
+    const Solved answer = solved(*folder / (std::string(file) + ".txt"));
     EXPECT_EQ(score(answer), best) << file;
   }
 }
