@@ -87,7 +87,8 @@ class Search {
     }
     if (model_.tasks() <= kMostPricedTasks) bound_ = tour::CompletionBound(model_).whole();
     if (!exact()) raise_bound();
-    if (!solve_as_order()) search();
+    if (model_.tasks() == 0) offer({});
+    if (!best_ && !solve_as_order()) search();
     if (!best_) return nothing_found();
     if (exact() && !proven()) raise_bound();
     return answer();
@@ -107,7 +108,7 @@ class Search {
   bool solve_as_order() {
     const bool optional = std::any_of(problem_.tasks.begin(), problem_.tasks.end(),
                                       [](const TourTask& t) { return t.reward < kNever; });
-    if (!one_vehicle() || model_.tasks() == 0) return false;
+    if (!one_vehicle()) return false;
     const TourVehicle& vehicle = problem_.vehicles.front();
     const bool limited = optional || std::isfinite(vehicle.battery_j) || model_.windows() ||
                          vehicle.latest_s < kNever || vehicle.load_capacity < kNever;
@@ -189,7 +190,7 @@ class Search {
     return visits;
   }
 
-  // Consecutive parts of equal price; what its vehicle cannot do is left to be inserted.
+  // Consecutive parts of equal price; what its vehicle cannot load is left to be inserted.
   void set_parts(FleetPlan& plan, int parts) const {
     std::vector<double> price{0.0};  // up to each visit of the order
     int site = model_.kind(0).vehicle.start;
@@ -199,10 +200,15 @@ class Search {
       site = model_.mode(visit).exit;
     }
     std::vector<std::vector<Visit>> visits(static_cast<std::size_t>(parts));
+    std::vector<double> load(visits.size(), 0.0);
     for (std::size_t i = 0; i < order_.size(); ++i) {
       const double share = price[i + 1] / std::max(price.back(), 1e-12);
-      const int part = std::clamp(static_cast<int>(share * parts - 1e-9), 0, parts - 1);
-      visits[static_cast<std::size_t>(part)].push_back(order_[i]);
+      const auto part = static_cast<std::size_t>(
+          std::clamp(static_cast<int>(share * parts - 1e-9), 0, parts - 1));
+      const double demand = model_.task(order_[i].task).demand;
+      if (load[part] + demand > problem_.vehicles[part].load_capacity) continue;
+      load[part] += demand;
+      visits[part].push_back(order_[i]);
     }
     visits.resize(static_cast<std::size_t>(plan.vehicles()));
     plan.restore(visits);

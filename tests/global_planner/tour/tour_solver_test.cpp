@@ -26,7 +26,8 @@ bool expect_least_cost(const SmallProblem& spec, std::uint64_t seed) {
   const double least = TourOracle(problem).least_cost();
   const auto solution = solve_tour(problem);
   if (least == kNever) {
-    EXPECT_FALSE(solution.has_value());
+    EXPECT_FALSE(solution.has_value())
+        << "where there is none, and is " << check_solution(problem, *solution).value_or("valid");
     return false;
   }
   EXPECT_TRUE(solution.has_value()) << to_string(solution.error());
