@@ -184,8 +184,10 @@ void FleetPlan::try_candidates(int task, Insertion& best) {
                     candidates_.end(), cheaper);
   for (std::size_t i = 0; i < sorted; ++i) {
     const Candidate& c = candidates_[i];
-    if (best.vehicle >= 0 && (i >= kFirstTries || c.change >= best.change)) return;
     const RouteState& r = route(c.vehicle);
+    // By a station a way may be cheaper: then its price alone says less.
+    const bool sure = model_.kind(r.kind).detours_never_pay;
+    if (best.vehicle >= 0 && sure && (i >= kFirstTries || c.change >= best.change)) return;
     const Visit visit{task, c.mode};
     if (model_.most_modes() > 1 &&
         try_edit(c.vehicle, evaluator_.insertion(r, c.position, visit, edit_visits_), best)) {

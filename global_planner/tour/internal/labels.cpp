@@ -129,7 +129,7 @@ void Crossing::cross(const LabelSet& from, int a, int b, const Outlook& outlook,
     const TourLeg& onward = model_.way(kind_index_, site, b);
     if (drive_curve(curve, onward)) {
       dominance_.add(to, {label.cost + onward.cost, 0, 0, label.before, label.stations}, curve_);
-      if (effort_ == Effort::kThrifty) continue;
+      if (effort_ == Effort::kThrifty && kind_.detours_never_pay) continue;
     }
     visit_stations(label, curve, at.station, site, b, outlook.latest_s);
   }

@@ -11,6 +11,7 @@ namespace {
 // Christiaens and Vanden Berghe 2020, Table 1: tasks removed on average, longest string, share of
 // split strings, their growth, and blinks.
 constexpr double kRemovedOnAverage = 10.0;
+constexpr double kRemovedShare = 0.4;  // of all tasks at most, where there are few
 constexpr double kLongestString = 10.0;
 constexpr double kSplitShare = 0.5;
 constexpr double kSplitGrowth = 0.01;
@@ -18,6 +19,7 @@ constexpr double kBlink = 0.01;
 // Temperatures, in mean costs of a way to a near task (theirs are 100 and 1 on a 1000 x 1000 grid).
 constexpr double kHot = 1.0;
 constexpr double kCold = 0.01;
+constexpr double kGenerousShare = 0.2;
 constexpr long kPollEvery = 100;
 
 double temperature_unit(const Model& model, const NearTasks& near) {
@@ -194,8 +196,10 @@ void RuinRecreate::ruin() {
   const int absent = static_cast<int>(absent_.size());
   const int routes = std::max(1, plan_.used_vehicles());
   const double mean_size = static_cast<double>(n - absent) / routes;
-  const double longest = std::max(1.0, std::min(kLongestString, mean_size));
-  const double most_strings = 4.0 * kRemovedOnAverage / (1.0 + longest) - 1.0;
+  const double longest =
+      std::max(1.0, std::min({kLongestString, mean_size, 2.0 * kRemovedShare * n}));
+  const double removed_tasks = std::min(kRemovedOnAverage, 1.0 + kRemovedShare * n);
+  const double most_strings = std::max(1.0, 4.0 * removed_tasks / (1.0 + longest) - 1.0);
   const int strings = static_cast<int>(random_.uniform(1.0, most_strings + 1.0));
   std::vector<int> ruined;
   const int seed = random_.index(n);
@@ -276,9 +280,12 @@ void RuinRecreate::recreate(double blink) {
     if (plan_.absent(t)) absent_.push_back(t);
   }
   sort_absent();
+  // What does not pay by itself may pay with others: now and then it is put in all the same.
+  const bool generous = blink > 0.0 && random_.uniform() < kGenerousShare;
+  const double worth = generous ? 1.0 / (1.0 - random_.uniform()) : 1.0;
   for (const int task : absent_) {
     const FleetPlan::Insertion best = plan_.best_insertion(task, blink, random_);
-    if (best.vehicle >= 0 && best.change < model_.task(task).reward) {
+    if (best.vehicle >= 0 && best.change < worth * model_.task(task).reward) {
       plan_.insert(best);
     }
   }

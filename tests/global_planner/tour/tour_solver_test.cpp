@@ -137,6 +137,37 @@ TEST(SolveTour, RuinAndRecreateComesNearTheOptimum) {
   }
 }
 
+// Limits of every kind at once; what is found without exact search is valid, and seldom dearer.
+TEST(SolveTour, RuinAndRecreateKeepsEveryLimit) {
+  int found = 0;
+  int best = 0;
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE(fmt::format("problem {}", i));
+    const SmallProblem spec{.tasks = 5,
+                            .vehicles = 1 + i % 3,
+                            .windows = i % 2 == 0,
+                            .rewards = i % 5 != 0,
+                            .two_modes = i % 3 != 0,
+                            .downhill = i % 4 == 0,
+                            .alike = i % 2 == 1,
+                            .duration_weight = i % 4 == 1 ? 1.0 : 0.0,
+                            .span_weight = i % 4 == 3 ? 1.0 : 0.0};
+    const TourProblem problem = make_problem(spec, static_cast<std::uint64_t>(100 + i));
+    const auto exact = solve_tour(problem);
+    const double cost = heuristic_cost(problem);
+    if (!exact) {
+      EXPECT_EQ(cost, kNever);
+      continue;
+    }
+    EXPECT_EQ(check_solution(problem, *exact).value_or("valid"), "valid");
+    EXPECT_GE(cost, exact->cost - 1e-6);
+    ++found;
+    best += cost <= exact->cost + 1e-6;
+  }
+  EXPECT_GE(found, 20);
+  EXPECT_GE(10 * best, 9 * found);
+}
+
 TEST(SolveTour, SameSeedGivesTheSameTour) {
   const TourProblem problem = plane(30, 3, 3, 200.0, 4);
   TourOptions options;
