@@ -234,10 +234,11 @@ class Search {
     plan.restore(visits);
   }
 
-  // An order that is best but for the charges needs little more.
+  // Rows start from an order that is best but for charges and shares, and need little more.
   long usual_budget() const {
-    return one_vehicle() && !order_.empty() ? 2'000 + 20L * model_.tasks()
-                                            : 20'000 + 400L * model_.tasks();
+    const bool rows = model_.most_modes() > 1 && !model_.windows();
+    if (!rows) return 20'000 + 400L * model_.tasks();
+    return one_vehicle() ? 2'000 + 20L * model_.tasks() : 5'000 + 100L * model_.tasks();
   }
 
   // True if the best is proven.
