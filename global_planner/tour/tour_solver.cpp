@@ -12,6 +12,7 @@
 #include "global_planner/tour/internal/exact_search.hpp"
 #include "global_planner/tour/internal/impossible.hpp"
 #include "global_planner/tour/internal/itinerary.hpp"
+#include "global_planner/tour/internal/least_legs.hpp"
 #include "global_planner/tour/internal/order.hpp"
 #include "global_planner/tour/internal/ruin_recreate.hpp"
 
@@ -116,10 +117,29 @@ class Search {
     const auto order = tour::solve_order(problem_, options_);
     if (!order) return false;
     for (const auto& [task, mode] : order->visits) order_.push_back({task, mode});
-    if (limited) return false;
+    if (limited) {
+      // Limits only add to it, unless a station shortens a way.
+      if (!optional && ways_are_least()) bound_ = std::max(bound_, order->lower_bound);
+      return false;
+    }
     offer({{0, order_}});
     bound_ = std::max(bound_, order->lower_bound);
     return best_.has_value();
+  }
+
+  // No way is cheaper by a station than straight.
+  bool ways_are_least() const {
+    const auto price = [this](const TourLeg& leg) { return model_.price(leg); };
+    const tour::LeastLegs least(problem_, price);
+    if (!least.bounded()) return false;
+    const double slack = model_.cost_slack();
+    for (int from = 0; from < problem_.sites; ++from) {
+      for (int to = 0; to < problem_.sites; ++to) {
+        const TourLeg& way = problem_.way(problem_.vehicles.front().profile, from, to);
+        if (from != to && least.way(from, to) < price(way) - slack) return false;
+      }
+    }
+    return true;
   }
 
   void search() {
@@ -214,7 +234,12 @@ class Search {
     plan.restore(visits);
   }
 
-  long usual_budget() const { return 20'000 + 400L * model_.tasks(); }
+  // Rows start from an order that is best but for charges and shares, and need little more.
+  long usual_budget() const {
+    const bool rows = model_.most_modes() > 1 && !model_.windows();
+    if (!rows) return 20'000 + 400L * model_.tasks();
+    return one_vehicle() ? 2'000 + 20L * model_.tasks() : 5'000 + 100L * model_.tasks();
+  }
 
   // True if the best is proven.
   bool find_exactly() {

@@ -202,7 +202,7 @@ Result<std::vector<Pair>> all_pairs(const EnergyStudyConfig& config, int jobs) {
 
 Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) {
   StudyResult result{config.study};
-  for (const double ratio : config.recuperation_ratios) {
+  for (const double ratio : config.recuperations_ratio) {
     EnergyStudyConfig with = config;
     with.vehicle.energy.recuperation_efficiency_ratio = ratio;
     const auto pairs = all_pairs(with, jobs);

@@ -26,7 +26,7 @@ struct EnergyStudyConfig {
   double cell_m = 2.0;          ///< of the terrain
   int samples_count = 4000;     ///< poses of the roadmap
   /// The vehicle with these recuperation efficiencies; many field robots have none.
-  std::vector<double> recuperation_ratios = {0.0, 0.3, 0.6};
+  std::vector<double> recuperations_ratio = {0.0, 0.3, 0.6};
   Vehicle vehicle;
 
   template <class V>
@@ -40,7 +40,7 @@ struct EnergyStudyConfig {
     v("wavelength_m", wavelength_m, config::Range{10.0, 5000.0}, "Of the largest hills [m]");
     v("cell_m", cell_m, config::Range{0.1, 50.0}, "Of the terrain [m]");
     v("samples_count", samples_count, config::Range{10, 100000}, "Poses of the roadmap");
-    v("recuperation_ratios", recuperation_ratios, config::kFraction,
+    v("recuperations_ratio", recuperations_ratio, config::kFraction,
       "Recuperation efficiencies of the vehicle, a group of cells each");
     v("vehicle", vehicle, "Who drives");
   }

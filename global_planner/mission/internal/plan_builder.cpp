@@ -206,6 +206,26 @@ void add_totals(MissionPlan& plan) {
   }
 }
 
+// What the mission asks for: energy and length of all legs, and the time until the last vehicle is
+// done.
+double objective_value(const TourModel& model, const MissionPlan& plan) {
+  const CostWeights weights = model.mission().config.cost_weights();
+  double value = weights.per_s * plan.makespan_s;
+  for (const VehiclePlan& vehicle : plan.vehicles) {
+    for (const PlanLeg& leg : vehicle.legs) {
+      value += weights.per_j * leg.cost.energy_j + weights.per_m * leg.cost.length_m;
+    }
+  }
+  return value;
+}
+
+// The solver's cost also counts the vehicles' time a little, to settle ties: what that can come to.
+double tie_breaks(const TourModel& model, const MissionPlan& plan) {
+  const auto vehicles = static_cast<double>(plan.vehicles.size());
+  const double asked = vehicles == 1 ? model.mission().config.cost_weights().per_s : 0.0;
+  return (model.problem().duration_weight - asked) * vehicles * plan.makespan_s;
+}
+
 // Where the battery would fall below its reserve without the charge at `leg`: a text.
 std::string charge_reason(const VehiclePlan& plan, std::size_t leg) {
   const Battery& battery = plan.vehicle.battery;
@@ -262,8 +282,6 @@ MissionPlan build_plan(const TourModel& model, const TourSolution& solution) {
     lost += model.problem().tasks[static_cast<std::size_t>(dropped.task)].reward;
     plan.dropped.push_back({model.task_name(dropped.task), dropped.reason});
   }
-  plan.value = solution.cost - lost;
-  plan.lower_bound = std::clamp(solution.lower_bound - lost, std::min(0.0, plan.value), plan.value);
   plan.proven = solution.optimal;
   for (int v = 0; v < static_cast<int>(model.mission().vehicles.size()); ++v) {
     TourBuilder tour(model, v);
@@ -273,6 +291,9 @@ MissionPlan build_plan(const TourModel& model, const TourSolution& solution) {
     plan.vehicles.push_back(tour.finish());
   }
   add_totals(plan);
+  plan.value = objective_value(model, plan);
+  plan.lower_bound = std::clamp(solution.lower_bound - lost - tie_breaks(model, plan),
+                                std::min(0.0, plan.value), plan.value);
   add_reasons(plan);
   return plan;
 }

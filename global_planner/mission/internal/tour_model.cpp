@@ -17,6 +17,9 @@ constexpr DriveCost kNoWay{kInfinity, kInfinity, kInfinity, kInfinity};
 constexpr int kMostPieces = 64;     // of a row
 constexpr int kPointsToFull = 16;   // of a charging function where the power falls
 constexpr double kIdleTime = 1e-3;  // weight of all vehicles' time beside the last one's
+// Of a second [J, km]: among plans of equal cost the quicker one, with charges no longer than
+// needed.
+constexpr double kTieBreak = 1e-3;
 
 std::vector<Site> stops_of(const Mission& mission) {
   std::vector<Site> stops;
@@ -421,8 +424,10 @@ void TourModel::build_problem() {
         {charger(c), mission_->farm.chargers[static_cast<std::size_t>(c)].slots});
   }
   for (int v = 0; v < vehicles(); ++v) problem_.vehicles.push_back(tour_vehicle(v));
-  const double per_s = mission_->config.cost_weights().per_s;
-  problem_.duration_weight = vehicles() == 1 ? per_s : kIdleTime * per_s;
+  const CostWeights weights = mission_->config.cost_weights();
+  const double per_s = weights.per_s;
+  problem_.duration_weight = (vehicles() == 1 ? per_s : kIdleTime * per_s) +
+                             kTieBreak * (weights.per_j + kTieBreak * weights.per_m);
   problem_.span_weight = vehicles() == 1 ? 0.0 : per_s;
 
   double most = 1.0;  // a bound on the cost of a task done
