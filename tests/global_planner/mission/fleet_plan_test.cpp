@@ -7,6 +7,7 @@
 
 #include "global_planner/mission/internal/tour_model.hpp"
 #include "global_planner/mission/mission_plan.hpp"
+#include "global_planner/tour/tour_solver.hpp"
 
 namespace headland {
 namespace {
@@ -198,6 +199,23 @@ TEST(FleetPlan, EveryChargeStopHasAReason) {
   EXPECT_EQ(static_cast<int>(plan->reasons.size()), plan->charge_stops);
   for (const PlanReason& reason : plan->reasons) {
     EXPECT_NE(reason.text.find("kWh at c1"), std::string::npos) << reason.text;
+  }
+}
+
+TEST(FleetPlan, SolutionsOfItsTourProblemPassTheCheck) {
+  for (const double capacity_wh : {30.0, 45.0, 120.0}) {
+    for (const int vehicles : {1, 2}) {
+      for (const Objective objective : {Objective::kEnergy, Objective::kTime}) {
+        Mission m = mission(capacity_wh, vehicles);
+        m.config.objective = objective;
+        const auto model = mission::TourModel::build(m);
+        ASSERT_TRUE(model) << to_string(model.error());
+        const auto solution = solve_tour(model->problem());
+        ASSERT_TRUE(solution) << to_string(solution.error());
+        EXPECT_EQ(check_solution(model->problem(), *solution).value_or(""), "")
+            << capacity_wh << " Wh, " << vehicles << " vehicles";
+      }
+    }
   }
 }
 
