@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr DriveCost kNoWay{kInfinity, kInfinity, kInfinity, kInfinity};
 constexpr int kMostPieces = 64;     // of a row
-constexpr int kPointsToFull = 16;   // of a charging function where the power falls
+constexpr int kPointsToFull = 4;    // of a charging function where the power falls
 constexpr double kIdleTime = 1e-3;  // weight of all vehicles' time beside the last one's
 // Of a second [J, km]: among plans of equal cost the quicker one, with charges no longer than
 // needed.
