@@ -20,6 +20,29 @@ void add_common(CLI::App* command, CommonOptions& options, const char* file_name
       ->take_all();
 }
 
+CLI::App* add_route(CLI::App& app, CommonOptions& options,
+                    headland::apps::RouteOptions& route_options, std::string& out) {
+  auto* route = app.add_subcommand(
+      "route", "Solve a routing instance: TSPLIB TSP and ATSP, EVRP (CEC-12), E-VRPTW, OP");
+  route->add_option("FILE", options.file, "Instance; its format is recognised by its content")
+      ->required();
+  route->add_option("--time-limit-s", route_options.time_limit_s, "Search at most this long")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  route->add_option("--seed", route_options.seed, "Seed of the search")->capture_default_str();
+  route
+      ->add_option("--iterations", route_options.iterations,
+                   "Rounds of a single search; 0: searches until the time is up or three in a "
+                   "row find nothing better")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  route->add_option("--out", out,
+                    "Directory for solution.json and solution.sol; none: no "
+                    "files");
+  route->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
+  return route;
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Headland: energy-aware planning and driving for farm robots"};
   app.require_subcommand(1);
@@ -60,27 +83,9 @@ int run(int argc, char** argv) {
       ->check(CLI::NonNegativeNumber);
   study->callback([&] { code = headland::apps::study_command(options, jobs, max_episodes); });
 
-  auto* route = app.add_subcommand(
-      "route", "Solve a routing instance: TSPLIB TSP and ATSP, EVRP (CEC-12), E-VRPTW, OP");
   headland::apps::RouteOptions route_options;
   std::string route_out;
-  route->add_option("FILE", options.file, "Instance; its format is recognised by its content")
-      ->required();
-  route->add_option("--time-limit-s", route_options.time_limit_s, "Search at most this long")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
-  route->add_option("--seed", route_options.seed, "Seed of the search")->capture_default_str();
-  route
-      ->add_option("--iterations", route_options.iterations,
-                   "Rounds of a single search; 0: searches until the time is up or three in a "
-                   "row find nothing better")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  route->add_option("--out", route_out,
-                    "Directory for solution.json and solution.sol; none: no "
-                    "files");
-  route->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
-  route->callback([&] {
+  add_route(app, options, route_options, route_out)->callback([&] {
     options.out = route_out;
     code = headland::apps::route_command(options, route_options);
   });

@@ -2,6 +2,7 @@
 #include "apps/plan_output.hpp"
 
 #include <cmath>
+#include <set>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -149,7 +150,7 @@ std::string duration_text(double seconds) {
 }
 
 std::string plan_text(const MissionPlan& plan, double planning_s) {
-  int rows = 0;
+  std::set<std::string> rows;
   int visits = 0;
   int vehicles = 0;
   double min_soc = 1.0;
@@ -157,8 +158,8 @@ std::string plan_text(const MissionPlan& plan, double planning_s) {
     vehicles += vehicle.legs.empty() ? 0 : 1;
     min_soc = std::min(min_soc, vehicle.min_soc);
     for (const PlanLeg& leg : vehicle.legs) {
-      rows += leg.kind == LegKind::kRow ? 1 : 0;
-      visits += leg.kind == LegKind::kTask ? 1 : 0;
+      if (leg.kind == LegKind::kRow) rows.insert(leg.id);
+      visits += leg.visit >= 0 ? 1 : 0;
     }
   }
   std::string text = fmt::format(
@@ -168,7 +169,7 @@ std::string plan_text(const MissionPlan& plan, double planning_s) {
       "energy     {:.2f} kWh, {} charge stop{}, lowest state of charge {:.1f} %\n"
       "margin     {:.2f} kWh above the reserve on reaching a charger from anywhere\n"
       "duration   {}\n",
-      config::enum_name(plan.status()), gap_text(plan), planning_s, rows, plan.work_m,
+      config::enum_name(plan.status()), gap_text(plan), planning_s, rows.size(), plan.work_m,
       visits > 0 ? fmt::format(", {} visits", visits) : "", vehicles, plan.vehicles.size(),
       plan.turn_m, plan.transit_m, total_energy(plan) / 3.6e6, plan.charge_stops,
       plan.charge_stops == 1 ? "" : "s", 100.0 * min_soc, plan.min_margin_j / 3.6e6,

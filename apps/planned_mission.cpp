@@ -3,6 +3,8 @@
 
 #include <chrono>
 
+#include "apps/interrupt.hpp"
+
 namespace headland::apps {
 namespace {
 
@@ -10,6 +12,16 @@ namespace {
 Error in_file(Error error, const std::string& file) {
   if (error.where.file.empty()) error.where.file = file;
   return error;
+}
+
+// Ctrl-C ends the search with the best plan found.
+Result<MissionPlan> plan_with_progress(const Mission& mission) {
+  ProgressBar bar("planning");
+  const InterruptGuard guard;
+  PlanningHooks hooks;
+  hooks.stop = InterruptGuard::interrupted;
+  hooks.progress = [&bar](double fraction, double) { bar.update(fraction); };
+  return plan_mission(mission, hooks);
 }
 
 }  // namespace
@@ -27,7 +39,7 @@ Result<PlannedMission> plan_from_file(const CommonOptions& options) {
   auto mission =
       load_mission(planned.config.mission, std::filesystem::path(options.file).parent_path());
   if (!mission) return tl::unexpected<Error>(in_file(mission.error(), options.file));
-  auto plan = plan_mission(*mission);
+  auto plan = plan_with_progress(*mission);
   if (!plan) return tl::unexpected<Error>(in_file(plan.error(), options.file));
   planned.planning_s =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPlanSpacing = 0.25;   // of the drawn plan's points [m]
 constexpr double kSeriesSpacing = 1.0;  // of a plan's series [m]
-constexpr double kTerrainRim = 0.2;    // of the map's longer side, around it
+constexpr double kTerrainRim = 0.2;     // of the map's longer side, around it
 constexpr int kMostCells = 400;         // of a study's table
 
 void add_areas(const std::vector<Polygon>& areas, const char* kind, Report& report) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <iterator>
 
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/interrupt.hpp"
 #include "apps/output_files.hpp"
 #include "apps/route_output.hpp"
 #include "global_planner/tour/tour_solver.hpp"
@@ -19,21 +19,6 @@ using Clock = std::chrono::steady_clock;
 
 // Searches from other seeds, one after the other, that find nothing better before it is enough.
 constexpr int kVainSearches = 3;
-
-// What a signal may set: Ctrl-C ends the search, and the best so far is printed.
-volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int) { interrupted = 1; }
-
-class InterruptGuard {
- public:
-  InterruptGuard() : before_(std::signal(SIGINT, interrupt)) { interrupted = 0; }
-  ~InterruptGuard() { std::signal(SIGINT, before_); }
-  InterruptGuard(const InterruptGuard&) = delete;
-  InterruptGuard& operator=(const InterruptGuard&) = delete;
-
- private:
-  void (*before_)(int);
-};
 
 class TimedSearch {
  public:
@@ -62,7 +47,7 @@ class TimedSearch {
  private:
   // One vehicle and nothing else to mind: the search for an order does not gain from another seed.
   bool unlimited() const { return instance_.format == "ATSP" || instance_.format == "TSP"; }
-  bool over() const { return interrupted != 0 || seconds() > options_.time_limit_s; }
+  bool over() const { return InterruptGuard::interrupted() || seconds() > options_.time_limit_s; }
 
   Result<TourSolution> solve(std::uint64_t seed) {
     TourOptions options;

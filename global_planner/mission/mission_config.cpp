@@ -173,6 +173,25 @@ std::optional<Error> TaskConfig::check() const {
                {{}, 0, "latest_s"}};
 }
 
+std::optional<Error> MissionConfig::check() const {
+  const bool weighted = objective == Objective::kWeighted;
+  const bool given =
+      weights.energy_ratio != 1.0 || weights.time_w != 0.0 || weights.length_n != 0.0;
+  if (!weighted && given) {
+    return Error{ErrorCode::kOutOfRange,
+                 "weights are given, but the objective does not use them",
+                 "write objective: weighted",
+                 {{}, 0, "weights"}};
+  }
+  if (!weighted || weights.energy_ratio + weights.time_w + weights.length_n > 0.0) {
+    return std::nullopt;
+  }
+  return Error{ErrorCode::kOutOfRange,
+               "all weights are zero",
+               "one of them must be positive",
+               {{}, 0, "weights"}};
+}
+
 std::filesystem::path resolve_path(const std::string& path,
                                    const std::filesystem::path& directory) {
   static constexpr std::string_view kVariable = "$HEADLAND_DATA";

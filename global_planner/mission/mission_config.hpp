@@ -82,10 +82,10 @@ struct TaskConfig {
       "A visit counts from this near: observation 5, soil sampling 2, weed spraying 1 (seed 003) "
       "[m]");
     v("dwell_s", dwell_s, config::Range{0.0, 1e5}, "Standing time of a visit [s]");
-    v("value_ratio", value_ratio, config::Range{1e-3, 1e6},
+    v("value_ratio", value_ratio, config::Range{0.01, 100.0},
       "Of each row or visit, beside the others', when some have to be dropped");
-    v("earliest_s", earliest_s, config::kNonNegative, "Not begun before [s]");
-    v("latest_s", latest_s, config::kNonNegative, "Begun by then [s]");
+    v("earliest_s", earliest_s, config::Range{0.0, 1e7}, "Not begun before [s]");
+    v("latest_s", latest_s, config::Range{0.0, 1e7}, "Begun by then [s]");
   }
 };
 
@@ -97,6 +97,7 @@ struct PlannerConfig {
   std::string cache;
   double margin_m = 0.1;
   double energy_margin_ratio = 0.05;
+  double time_margin_ratio = 0.05;
   bool fishtail = true;
   bool reeds_shepp = true;
 
@@ -114,6 +115,8 @@ struct PlannerConfig {
       "Kept between the outline and the edge of the drivable area [m]");
     v("energy_margin_ratio", energy_margin_ratio, config::Range{0.0, 1.0},
       "Recharge stops are planned as if all driving drew this much more: ramps, slowing, noise");
+    v("time_margin_ratio", time_margin_ratio, config::Range{0.0, 1.0},
+      "Shifts and latest times are planned as if all took this much longer: slowing down, braking");
     v("fishtail", fishtail, "Allow fishtail turns");
     v("reeds_shepp", reeds_shepp, "Allow Reeds-Shepp turns");
   }
@@ -144,6 +147,8 @@ struct MissionConfig {
   WeightsConfig weights;
   bool allow_dropping = false;
   PlannerConfig planner;
+
+  std::optional<Error> check() const;
 
   /// What is minimised.
   CostWeights cost_weights() const {

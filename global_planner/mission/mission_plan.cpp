@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "global_planner/mission/mission_plan.hpp"
 
-#include <cctype>
-#include <string>
-
 #include "global_planner/mission/internal/plan_builder.hpp"
 #include "global_planner/mission/internal/tour_model.hpp"
 #include "global_planner/tour/tour_solver.hpp"
@@ -11,25 +8,18 @@
 namespace headland {
 namespace {
 
-// The solver speaks of "task 4"; this puts the row's or place's name there.
-Error with_task_name(Error error, const mission::TourModel& model) {
-  static constexpr std::string_view kWord = "task ";
-  const auto at = error.what.find(kWord);
-  if (at == std::string::npos) return error;
-  const auto begin = at + kWord.size();
-  auto end = begin;
-  while (end < error.what.size() && std::isdigit(static_cast<unsigned char>(error.what[end]))) {
-    ++end;
-  }
-  if (end == begin || end - begin > 7) return error;
-  const int task = std::stoi(error.what.substr(begin, end - begin));
+Error in_the_missions_words(Error error, const mission::TourModel& model) {
   if (error.code == ErrorCode::kNoPath) {
-    error.remedy = "join it by a road or gate that is wide enough, use a smaller vehicle, or leave it "
-                   "out";
+    error.remedy =
+        "join it by a road or gate that is wide enough, use a smaller vehicle, or leave it "
+        "out";
   }
-  if (task < static_cast<int>(model.tasks().size())) {
-    error.what.replace(at, end - at, model.task_name(task));
+  if (error.code == ErrorCode::kTaskDoesNotFit) {
+    error.remedy =
+        "allow_dropping: true leaves the least valuable out; or more charge, chargers, time "
+        "(shift_s, latest_s) or vehicles";
   }
+  error.what = model.named(error.what, true);
   return error;
 }
 
@@ -45,7 +35,7 @@ Result<MissionPlan> plan_mission(const Mission& mission, const PlanningHooks& ho
   options.stop = hooks.stop;
   options.progress = hooks.progress;
   const auto solution = solve_tour(model->problem(), options);
-  if (!solution) return tl::unexpected<Error>(with_task_name(solution.error(), *model));
+  if (!solution) return tl::unexpected<Error>(in_the_missions_words(solution.error(), *model));
   return mission::build_plan(*model, *solution);
 }
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,8 +22,10 @@ struct PlanLeg {
   DriveCost cost;  ///< a charge has only a duration
   double soc_end = 1.0;
   int cusps = 0;
-  double begin_s = 0.0;  ///< since the mission's start
-  double wait_s = 0.0;   ///< stood still before that: for a slot, or until its time has come
+  double begin_s = 0.0;     ///< since the mission's start
+  double wait_s = 0.0;      ///< stood still before that: for a slot, or until its time has come
+  double earliest_s = 0.0;  ///< of a visit or a wait: not before
+  int visit = -1;           ///< in Mission::visits
   double from_m = 0.0;  ///< of a row that is worked in parts: where this part begins and ends, from
   double to_m = 0.0;    ///< the row's first end; both 0: all of it
 };
@@ -41,9 +45,11 @@ struct VehiclePlan {
   std::vector<PlanStage> stages;
   double energy_j = 0.0;  ///< drawn over all legs, net
   double min_soc = 1.0;
-  double finish_s = 0.0;  ///< since the mission's start
+  double shift_s = std::numeric_limits<double>::infinity();  ///< to be back by then
+  double finish_s = 0.0;                                     ///< since the mission's start
   /// At any metre of the plan at least this is left above the reserve when the vehicle drives on to
-  /// a charger, by the plan or by the nearest way [J]. Without chargers: above the reserve.
+  /// a charger, by the plan or by the nearest way [J]. Without chargers, or where it does not
+  /// drive: above the reserve.
   double min_margin_j = 0.0;
 };
 
@@ -78,7 +84,7 @@ struct MissionPlan {
   std::vector<PlanReason> reasons;
   std::vector<DroppedWork> dropped;
 
-  double gap_ratio() const { return value > 0.0 ? (value - lower_bound) / value : 0.0; }
+  double gap_ratio() const { return value == 0.0 ? 0.0 : (value - lower_bound) / std::abs(value); }
   PlanStatus status() const { return proven ? PlanStatus::kOptimal : PlanStatus::kFeasible; }
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <span>
 
@@ -46,6 +47,23 @@ class ChargerSlots {
   const Farm& farm_;
   std::vector<std::vector<int>> queues_;  // of vehicles, at each charger
 };
+
+// Rows, and those of which all parts are done, by whichever vehicle.
+void count_rows(std::span<const VehiclePlan> plans, std::span<const Run> runs,
+                RunMetrics& metrics) {
+  std::map<std::string, bool> done;
+  for (std::size_t v = 0; v < plans.size(); ++v) {
+    for (std::size_t i = 0; i < plans[v].legs.size(); ++i) {
+      const PlanLeg& leg = plans[v].legs[i];
+      if (leg.kind != LegKind::kRow) continue;
+      const auto row = done.emplace(leg.id, true).first;
+      row->second = row->second && runs[v].leg_done[i];
+    }
+  }
+  metrics.rows_total = static_cast<int>(done.size());
+  metrics.rows_done = static_cast<int>(
+      std::count_if(done.begin(), done.end(), [](const auto& row) { return row.second; }));
+}
 
 // One vehicle on its plan, tick by tick.
 class Driver {
@@ -150,7 +168,7 @@ class Driver {
       if (slots_.holds_slot(charger_, number_)) begin_charge(time);
       return;
     }
-    const double begin = std::max(time, stop().wait_s > 0.0 ? stop().begin_s : 0.0);
+    const double begin = std::max(time, stop().earliest_s);
     run_.metrics.waited_s += begin - time;
     until_ = begin + stop().cost.duration_s;
     vehicle_.draw(stop().cost.energy_j);
@@ -169,21 +187,16 @@ class Driver {
   void end_stop(double time) {
     if (stop().kind == LegKind::kCharge) slots_.leave(charger_, number_);
     run_.leg_done[static_cast<std::size_t>(stage().stop_leg)] =
-        stop().kind == LegKind::kCharge || visited(stop().id);
+        stop().visit < 0 || visited(visits_[static_cast<std::size_t>(stop().visit)]);
     ++stage_;
     begin_stage(time);
   }
 
-  // Whether the vehicle stands near enough to the poi.
-  bool visited(const std::string& id) const {
-    const Poi* poi = farm_.find_poi(id);
-    if (poi == nullptr) return true;  // a wait
-    double accuracy = 0.0;
-    for (const Visit& visit : visits_) {
-      if (&farm_.pois[static_cast<std::size_t>(visit.poi)] == poi) accuracy = visit.accuracy_m;
-    }
-    const Point2 off = vehicle_.truth().pose.position() - poi->pose.position();
-    return off.norm() <= accuracy;
+  // Whether the vehicle stands near enough to the poi, and not too late.
+  bool visited(const Visit& visit) const {
+    const Poi& poi = farm_.pois[static_cast<std::size_t>(visit.poi)];
+    const Point2 off = vehicle_.truth().pose.position() - poi.pose.position();
+    return off.norm() <= visit.accuracy_m && arrived_ <= visit.terms.latest_s;
   }
 
   double planned_duration(const PlanStage& driven) const {
@@ -229,11 +242,16 @@ class Driver {
   void summarise() {
     RunMetrics& metrics = run_.metrics;
     for (std::size_t i = 0; i < plan_.legs.size(); ++i) count_leg(i);
+    count_rows({&plan_, 1}, {&run_, 1}, metrics);
     const double reserve = plan_.vehicle.battery.reserve_soc;
     metrics.reserve_kept = metrics.min_soc >= reserve - 1e-9;
     if (metrics.reason.empty() && !metrics.reserve_kept) {
       metrics.reason = fmt::format("{}: the charge fell to {:.1f} %, below the reserve of {:.1f} %",
                                    plan_.id, 100.0 * metrics.min_soc, 100.0 * reserve);
+    }
+    if (metrics.reason.empty() && metrics.duration_s > plan_.shift_s) {
+      metrics.reason = fmt::format("{}: it was back {:.0f} s after its shift of {:.0f} s", plan_.id,
+                                   metrics.duration_s - plan_.shift_s, plan_.shift_s);
     }
     const int missed_rows = metrics.rows_total - metrics.rows_done;
     const int missed_visits = metrics.visits_total - metrics.visits_done;
@@ -251,17 +269,15 @@ class Driver {
   void count_leg(std::size_t i) {
     RunMetrics& metrics = run_.metrics;
     const PlanLeg& leg = plan_.legs[i];
-    if (leg.kind == LegKind::kTask && farm_.find_poi(leg.id) != nullptr) {
+    if (leg.visit >= 0) {
       ++metrics.visits_total;
       metrics.visits_done += run_.leg_done[i] ? 1 : 0;
     }
     if (leg.kind != LegKind::kRow) return;
-    ++metrics.rows_total;
     // The last row begun when a run breaks off was not driven to its end.
     const bool broken_off = !metrics.reason.empty() && !run_.trace.empty() &&
                             run_.trace.back().leg == static_cast<int>(i);
     run_.leg_done[i] = run_.leg_done[i] && !broken_off && worst_[i] <= config_.row_tolerance_m;
-    metrics.rows_done += run_.leg_done[i] ? 1 : 0;
   }
 
   int number_;
@@ -308,8 +324,6 @@ RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vecto
     const RunMetrics& one = run.metrics;
     all.completed = all.completed && one.completed;
     if (all.reason.empty()) all.reason = one.reason;
-    all.rows_done += one.rows_done;
-    all.rows_total += one.rows_total;
     all.visits_done += one.visits_done;
     all.visits_total += one.visits_total;
     all.charges += one.charges;
@@ -320,6 +334,7 @@ RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vecto
     all.reserve_kept = all.reserve_kept && one.reserve_kept;
     all.wrong_gear_count += one.wrong_gear_count;
   }
+  count_rows(plans, runs, all);
   all.tracking = fleet_tracking(plans, runs);
   return all;
 }

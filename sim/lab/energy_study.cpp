@@ -200,6 +200,13 @@ Result<std::vector<Pair>> all_pairs(const EnergyStudyConfig& config, int jobs) {
 
 }  // namespace
 
+std::optional<Error> EnergyStudyConfig::check() const {
+  constexpr double kMostCells = 25e6;
+  if (side_m / cell_m * side_m / cell_m <= kMostCells) return std::nullopt;
+  return Error{
+      ErrorCode::kOutOfRange, "more than 25 million cells", "a larger cell_m", {{}, 0, "cell_m"}};
+}
+
 Result<StudyResult> run_energy_study(const EnergyStudyConfig& config, int jobs) {
   StudyResult result{config.study};
   for (const double ratio : config.recuperations_ratio) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct EnergyStudyConfig {
   /// The vehicle with these recuperation efficiencies; many field robots have none.
   std::vector<double> recuperations_ratio = {0.0, 0.3, 0.6};
   Vehicle vehicle;
+
+  std::optional<Error> check() const;
 
   template <class V>
   void visit(V& v) {

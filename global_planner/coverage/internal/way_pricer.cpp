@@ -21,7 +21,8 @@ double WayPricer::potential(const Point2& at) const {
   if (objective_.per_j == 0.0 || ground_.flat()) return 0.0;
   const auto sample = ground_.sample(at);
   const EnergyModel& energy = vehicle_.energy;
-  const double per_metre = energy.recuperation_efficiency_ratio * energy.total_mass() * kGravity;
+  const double per_metre =
+      objective_.per_j * energy.recuperation_efficiency_ratio * energy.total_mass() * kGravity;
   return sample ? per_metre * sample->height : 0.0;
 }
 

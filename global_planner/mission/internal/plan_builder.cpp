@@ -20,6 +20,7 @@ class TourBuilder {
     plan_.id = given.id;
     plan_.vehicle = given.vehicle;
     plan_.start = given.start;
+    plan_.shift_s = given.shift_s;
     plan_.start_soc = given.soc;
     plan_.min_soc = given.soc;
     soc_ = given.soc;
@@ -59,10 +60,16 @@ class TourBuilder {
     const double wait = stop.begin_s - stop.arrival_s;
     if (task.visit >= 0) {
       stand(LegKind::kTask, model_.leg_id(stop.task), cost, wait);
+      plan_.legs.back().visit = task.visit;
+      plan_.legs.back().earliest_s =
+          model_.mission().visits[static_cast<std::size_t>(task.visit)].terms.earliest_s;
     } else if (in_one_go && !plan_.legs.empty() && plan_.legs.back().kind == LegKind::kRow) {
       prolong_row(stop, task, cost);
     } else {
-      if (wait > 0.0) stand(LegKind::kTask, "wait", {}, wait);
+      if (wait > 0.0) {
+        stand(LegKind::kTask, fmt::format("wait until {:.0f} s", stop.begin_s), {}, wait);
+        plan_.legs.back().earliest_s = stop.begin_s;
+      }
       add_leg(LegKind::kRow, model_.leg_id(stop.task), model_.work_path(v_, stop.task, stop.mode),
               cost);
       mark_part(task, stop.mode, true);
@@ -110,8 +117,11 @@ class TourBuilder {
     const Charger& charger = model_.mission().farm.chargers[static_cast<std::size_t>(stop.station)];
     DriveCost cost;
     cost.duration_s = stop.end_s - stop.begin_s;
-    // As much as the solver puts in: without its margin, the battery is the fuller for it.
-    soc_ = std::min(1.0, soc_ + (stop.end_j - stop.arrival_j) / battery().capacity_j());
+    if (stop.end_j <= stop.arrival_j) return;  // merely driven through
+    // For as long as the solver says. The battery is fuller than with the solver's margin: it ends
+    // at least as full.
+    const ChargeCurve curve = lower(charger.curve, battery().acceptance());
+    soc_ = curve.soc_after(soc_, cost.duration_s, battery().capacity_j());
     stand(LegKind::kCharge, charger.id, cost, stop.begin_s - stop.arrival_s);
   }
 
@@ -153,7 +163,8 @@ class TourBuilder {
   void set_margin() {
     const double capacity = battery().capacity_j();
     const double reserve = battery().reserve_j();
-    double need = model_.escape_j(v_, model_.finish(v_));
+    const bool idle = plan_.legs.empty();
+    double need = idle ? 0.0 : model_.escape_j(v_, model_.finish(v_));
     double margin = soc_ * capacity - reserve - need;
     for (auto k = static_cast<int>(plan_.legs.size()) - 1; k >= 0; --k) {
       const auto i = static_cast<std::size_t>(k);
@@ -280,7 +291,7 @@ MissionPlan build_plan(const TourModel& model, const TourSolution& solution) {
   double lost = 0.0;
   for (const DroppedTask& dropped : solution.dropped) {
     lost += model.problem().tasks[static_cast<std::size_t>(dropped.task)].reward;
-    plan.dropped.push_back({model.task_name(dropped.task), dropped.reason});
+    plan.dropped.push_back({model.task_name(dropped.task), model.named(dropped.reason, false)});
   }
   plan.proven = solution.optimal;
   for (int v = 0; v < static_cast<int>(model.mission().vehicles.size()); ++v) {
@@ -292,8 +303,7 @@ MissionPlan build_plan(const TourModel& model, const TourSolution& solution) {
   }
   add_totals(plan);
   plan.value = objective_value(model, plan);
-  plan.lower_bound = std::clamp(solution.lower_bound - lost - tie_breaks(model, plan),
-                                std::min(0.0, plan.value), plan.value);
+  plan.lower_bound = std::min(plan.value, solution.lower_bound - lost - tie_breaks(model, plan));
   add_reasons(plan);
   return plan;
 }

@@ -368,6 +368,19 @@ std::string TourModel::task_name(int task) const {
   return (tasks_[static_cast<std::size_t>(task)].visit >= 0 ? "visit " : "row ") + leg_id(task);
 }
 
+std::string TourModel::named(std::string text, bool keep_subject) const {
+  static constexpr std::string_view kWord = "task ";
+  const auto at = text.find(kWord);
+  if (at == std::string::npos) return text;
+  const auto begin = at + kWord.size();
+  const auto end = std::min(text.find_first_not_of("0123456789", begin), text.size());
+  if (end == begin || end - begin > 7) return text;
+  const int task = std::stoi(text.substr(begin, end - begin));
+  if (task >= static_cast<int>(tasks_.size())) return text;
+  if (!keep_subject && at == 0 && text.compare(end, 2, ": ") == 0) return text.substr(end + 2);
+  return text.replace(at, end - at, task_name(task));
+}
+
 std::string TourModel::site_name(int site) const {
   const Cut* cut = cut_of(site);
   if (cut == nullptr) return profiles_.front().ways.site(site).name;
@@ -408,12 +421,17 @@ TourVehicle TourModel::tour_vehicle(int v) const {
   vehicle.start_energy_j = given.soc * battery.capacity_j();
   vehicle.reserve_j = battery.reserve_j();
   vehicle.finish_energy_j = battery.reserve_j() + margined(escape_j(v, finish(v)));
-  vehicle.latest_s = given.shift_s;
+  vehicle.latest_s = given.shift_s / (1.0 + mission_->config.planner.time_margin_ratio);
   for (const Charger& c : mission_->farm.chargers) {
     vehicle.charging.push_back(
         charge_function(lower(c.curve, battery.acceptance()), battery.capacity_j()));
   }
   return vehicle;
+}
+
+const TaskTerms& TourModel::terms_of(const ModelTask& task) const {
+  return task.visit >= 0 ? mission_->visits[static_cast<std::size_t>(task.visit)].terms
+                         : mission_->row_terms[static_cast<std::size_t>(task.row)];
 }
 
 void TourModel::build_problem() {
@@ -441,10 +459,10 @@ void TourModel::build_problem() {
       }
     }
   }
+  double least_value = kInfinity;
+  for (const ModelTask& task : tasks_) least_value = std::min(least_value, terms_of(task).value);
   for (const ModelTask& task : tasks_) {
-    const TaskTerms& terms = task.visit >= 0
-                                 ? mission_->visits[static_cast<std::size_t>(task.visit)].terms
-                                 : mission_->row_terms[static_cast<std::size_t>(task.row)];
+    const TaskTerms& terms = terms_of(task);
     TourTask work;
     if (task.visit >= 0) {
       work.modes = {{visit(task.visit), visit(task.visit)}};
@@ -456,10 +474,11 @@ void TourModel::build_problem() {
       }
     }
     work.earliest_s = terms.earliest_s;
-    work.latest_s = terms.latest_s;
+    work.latest_s = terms.latest_s / (1.0 + mission_->config.planner.time_margin_ratio);
     if (mission_->config.allow_dropping) {
-      work.reward = terms.value * (task.end - task.begin) * most * 10.0 *
-                    static_cast<double>(tasks_.size() + 1);
+      // Any task is worth more than all driving: it is left out only where it cannot be done.
+      work.reward =
+          terms.value / least_value * most * 10.0 * static_cast<double>(tasks_.size() + 1);
     }
     problem_.tasks.push_back(std::move(work));
   }

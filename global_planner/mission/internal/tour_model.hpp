@@ -45,6 +45,9 @@ class TourModel {
   std::string task_name(int task) const;
   std::string leg_id(int task) const;
   std::string site_name(int site) const;
+  /// A text of the solver, which speaks of "task 4", with the row's or place's name there; without
+  /// "task 4: " at its beginning if the name stands beside it already.
+  std::string named(std::string text, bool keep_subject) const;
 
   DriveCost way_cost(int vehicle, int from, int to) const;
   LegKind way_kind(int vehicle, int from, int to) const;
@@ -86,6 +89,7 @@ class TourModel {
              double& short_j) const;
   Result<std::vector<double>> cuts_of(int row) const;
   Result<void> price_work();
+  const TaskTerms& terms_of(const ModelTask& task) const;
   void build_problem();
   TourLeg tour_leg(const DriveCost& cost) const;
   TourProfile tour_profile(const Profile& profile) const;
