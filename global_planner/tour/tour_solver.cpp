@@ -36,6 +36,7 @@ constexpr int kMostParts = 12;
 constexpr int kMostPricedTasks = 200;
 constexpr long kRoundsForExact = 2'000;  // of ruin and recreate, for the upper bound
 constexpr long kFirstAnneal = 20'000;
+constexpr long kFirstRowAnneal = 500;  // from a good order
 
 struct Candidate {
   std::vector<TourRoute> routes;
@@ -162,7 +163,9 @@ class Search {
       if (find_exactly()) return;
     }
     // Ever longer anneals, so that one may end at any time.
-    long length = std::min(rounds, std::max(kFirstAnneal, usual_budget() / 8));
+    const long first = rows() ? std::max(kFirstRowAnneal, usual_budget() / 16)
+                              : std::max(kFirstAnneal, usual_budget() / 8);
+    long length = std::min(rounds, first);
     for (long left = rounds; left > 0 && !search.stopped() && !proven(); length *= 2) {
       if (left / 2 < length) length = left;
       search.save_vehicles(length / 4);
@@ -234,10 +237,10 @@ class Search {
     plan.restore(visits);
   }
 
+  bool rows() const { return model_.most_modes() > 1 && !model_.windows(); }
   // Rows start from an order that is best but for charges and shares, and need little more.
   long usual_budget() const {
-    const bool rows = model_.most_modes() > 1 && !model_.windows();
-    if (!rows) return 20'000 + 400L * model_.tasks();
+    if (!rows()) return 20'000 + 400L * model_.tasks();
     return one_vehicle() ? 2'000 + 20L * model_.tasks() : 5'000 + 100L * model_.tasks();
   }
 
