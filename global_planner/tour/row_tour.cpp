@@ -116,7 +116,7 @@ RowTour search(const RowTourProblem& problem, const RowTourOptions& options) {
       options.iterations > 0 ? options.iterations : automatic_iterations(problem.rows());
   const double stop_cost = bound.bound + kProven * std::abs(bound.bound);
   adopt(tour::iterated_local_search(cycle, bound.neighbours, first, iterations, stop_cost,
-                                    options.seed));
+                                    options.seed, options.stop));
   tour.lower_bound = std::min(tour.lower_bound, tour.cost);
   tour.optimal = tour.cost <= stop_cost;
   return tour;

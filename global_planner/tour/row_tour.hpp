@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,8 +40,9 @@ struct RowTour {
 
 struct RowTourOptions {
   std::uint64_t seed = 1;
-  int iterations = 0;         ///< local-search kicks; 0: a number that suits the size
-  int exact_up_to_rows = 16;  ///< taken as 3..20: memory doubles with every row, 336 MB at 20
+  int iterations = 0;            ///< local-search kicks; 0: a number that suits the size
+  std::function<bool()> stop{};  ///< asked now and then; true ends the local search
+  int exact_up_to_rows = 16;     ///< taken as 3..20: memory doubles with every row, 336 MB at 20
 };
 
 /// The cheapest order of rows: exact up to `exact_up_to_rows` (Held and Karp 1962 over row and

@@ -263,8 +263,13 @@ double LocalSearch::recompute_cost() const {
   return sum;
 }
 
+namespace {
+constexpr int kPollEvery = 64;  // kicks
+}  // namespace
+
 Entries iterated_local_search(const Cycle& cycle, const Neighbours& neighbours, Entries entries,
-                              int iterations, double stop_cost, std::uint64_t seed) {
+                              int iterations, double stop_cost, std::uint64_t seed,
+                              const std::function<bool()>& stop) {
   RandomStream random(seed, "row tour");
   LocalSearch search(cycle, neighbours, std::move(entries));
   search.enqueue_all();
@@ -274,6 +279,7 @@ Entries iterated_local_search(const Cycle& cycle, const Neighbours& neighbours, 
   double best_cost = search.cost();
   double current = best_cost;
   for (int iteration = 0; iteration < iterations && best_cost > stop_cost; ++iteration) {
+    if (stop && iteration % kPollEvery == 0 && stop()) break;
     search.kick(random);
     search.descend();
     // Slightly dearer orders are kept too, ever fewer of them.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/base/random.hpp"
@@ -93,8 +94,9 @@ class LocalSearch {
 };
 
 /// Iterated local search: `iterations` kicks from `entries`, keeping slightly dearer
-/// orders too at first; ends early at `stop_cost`.
+/// orders too at first; ends early at `stop_cost`, and when `stop`, asked now and then, says so.
 Entries iterated_local_search(const Cycle& cycle, const Neighbours& neighbours, Entries entries,
-                              int iterations, double stop_cost, std::uint64_t seed);
+                              int iterations, double stop_cost, std::uint64_t seed,
+                              const std::function<bool()>& stop = {});
 
 }  // namespace headland::tour

@@ -73,14 +73,16 @@ Neighbours priced_neighbours(const CostMatrix& costs, const PricedCosts& priced)
 }
 
 Successors improved(const RowTourProblem& problem, const Neighbours& neighbours,
-                    const Successors& known, double stop_cost, int kicks, std::uint64_t seed) {
+                    const Successors& known, double stop_cost, int kicks,
+                    const OneWaySearch& search) {
   const Cycle cycle(problem);
   const int depot = problem.rows();
   Entries entries{2 * depot};
   for (int node = known[at(depot)]; node != depot; node = known[at(node)]) {
     entries.push_back(2 * node);
   }
-  entries = iterated_local_search(cycle, neighbours, entries, kicks, stop_cost, seed);
+  entries =
+      iterated_local_search(cycle, neighbours, entries, kicks, stop_cost, search.seed, search.stop);
   Successors next(known.size());
   for (std::size_t p = 0; p < entries.size(); ++p) {
     next[at(entries[p] / 2)] = entries[(p + 1) % entries.size()] / 2;
@@ -104,14 +106,14 @@ TreeAnswer one_way_tour(const RowTourProblem& problem, const OneWaySearch& searc
   // A quick descent sets the target of the prices; those tell the search proper what is worth
   // trying.
   const Successors quick = improved(problem, priced_neighbours(costs, {costs}), first.next,
-                                    first.lower_bound, 50 + costs.size, search.seed);
+                                    first.lower_bound, 50 + costs.size, search);
   const int rounds = static_cast<int>(std::clamp(kPriceSteps / (n * n * n), 20.0, 1500.0));
   const double target = std::min(first.cost, tour_length(costs, quick));
   const PricedCosts priced =
       price_cycles(costs, {target - first.lower_bound, rounds, search.stop, {}});
   const int kicks = search.iterations > 0 ? search.iterations : 20000 + 200 * costs.size;
   const Successors known = improved(problem, priced_neighbours(costs, priced), quick,
-                                    std::max(priced.bound, first.lower_bound), kicks, search.seed);
+                                    std::max(priced.bound, first.lower_bound), kicks, search);
   limits.most_nodes = 1 + std::lround(kTreeSteps / (n * n));
   TreeAnswer answer = search_assignments(
       costs, priced, tour_length(costs, known) < first.cost ? known : first.next, limits);

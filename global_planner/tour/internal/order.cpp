@@ -104,6 +104,7 @@ std::optional<OrderAnswer> row_order(const RowTourProblem& rows, const TourOptio
   RowTourOptions row_options;
   row_options.seed = options.seed;
   row_options.iterations = static_cast<int>(std::min(options.iterations, 100'000'000L));
+  row_options.stop = options.stop;
   const auto tour = solve_row_tour(rows, row_options);
   if (!tour) return {};
   OrderAnswer answer;
