@@ -253,4 +253,23 @@ std::pair<double, double> Path::leg_range(int leg) const {
   return {begin_s, end_s};
 }
 
+Path Path::slice(double from_s, double to_s) const {
+  Path part;
+  for (std::size_t i = 0; i < pieces_.size(); ++i) {
+    const double begin = i == 0 ? 0.0 : ends_[i - 1];
+    const double first = std::max(from_s, begin);
+    const double last = std::min(to_s, ends_[i]);
+    if (last <= first) continue;
+    PathPiece piece = pieces_[i];
+    const double gone = first - begin;
+    if (gone > 0.0) {
+      piece.start = piece.pose_at(gone);
+      piece.curvature = piece.curvature_at(gone);
+    }
+    piece.length = last - first;
+    part.append(piece);
+  }
+  return part;
+}
+
 }  // namespace headland

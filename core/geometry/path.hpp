@@ -93,6 +93,8 @@ class Path {
   /// Driven distance [m] at which leg number `leg` begins and ends; {0, 0} if the path has no such
   /// leg.
   std::pair<double, double> leg_range(int leg) const;
+  /// The stretch between two driven distances [m], clamped to the path; its legs keep their numbers.
+  Path slice(double from_s, double to_s) const;
 
  private:
   std::vector<PathPiece> pieces_;

@@ -24,6 +24,11 @@ struct EnergyModel {
   double implement_draft_n = 0.0;
 
   double total_mass() const { return mass_kg + payload_kg; }  ///< [kg]
+  /// What a metre of descent gives back at most [J/m]. Times the height it is a potential that
+  /// makes the energies of ways non-negative: energy + potential(from) - potential(to) >= 0.
+  double recuperable_j_per_m() const {
+    return recuperation_efficiency_ratio * total_mass() * kGravity;
+  }
 
   template <class V>
   void visit(V& v) {

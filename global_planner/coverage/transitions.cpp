@@ -415,13 +415,19 @@ DriveCost Transitions::cost(int from, int to) const {
   return w.cost;
 }
 
-bool Transitions::offer(int from, int to, const DriveCost& cost, Path path) {
+bool Transitions::offer(int from, int to, Path path) {
   Way& w = impl_->way(from, to);
   if (from == to || path.empty()) return false;
   // A headland turn is not given up merely because open ground is driven faster.
   if (kind(from, to) == LegKind::kTurn) return false;
-  if (w.type != WayType::kNone && impl_->value(w.cost) <= impl_->value(cost)) return false;
-  w = {cost, static_cast<int>(impl_->given.size()), WayType::kGiven};
+  // Sites are left and entered forwards.
+  int cusps = static_cast<int>(path.segments().size()) - 1;
+  if (path.segments().front().gear == Gear::kReverse) ++cusps;
+  if (path.segments().back().gear == Gear::kReverse) ++cusps;
+  const std::optional<DriveCost> cost = impl_->pricer.price(path, LegKind::kTransit, cusps);
+  if (!cost) return false;
+  if (w.type != WayType::kNone && impl_->value(w.cost) <= impl_->value(*cost)) return false;
+  w = {*cost, static_cast<int>(impl_->given.size()), WayType::kGiven};
   impl_->given.push_back(std::move(path));
   return true;
 }

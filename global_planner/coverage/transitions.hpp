@@ -55,8 +55,9 @@ class Transitions {
   DriveCost cost(int from, int to) const;
   /// kTurn for one manoeuvre in a headland, kTransit for a longer way.
   LegKind kind(int from, int to) const;
-  /// Offers another way; taken (true) where there is none yet, or a dearer one.
-  bool offer(int from, int to, const DriveCost& cost, Path path);
+  /// Offers another way, a path from `from`'s departure to `to`'s arrival; taken (true) where there
+  /// is none yet, or a dearer one, if the slopes allow it.
+  bool offer(int from, int to, Path path);
   /// The way itself; empty where there is none. Leg numbers are 0.
   Path path(int from, int to) const;
   /// cost(i, j).value(objective) of all pairs.

@@ -20,10 +20,8 @@ std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind, int cu
 double WayPricer::potential(const Point2& at) const {
   if (objective_.per_j == 0.0 || ground_.flat()) return 0.0;
   const auto sample = ground_.sample(at);
-  const EnergyModel& energy = vehicle_.energy;
-  const double per_metre =
-      objective_.per_j * energy.recuperation_efficiency_ratio * energy.total_mass() * kGravity;
-  return sample ? per_metre * sample->height : 0.0;
+  if (!sample) return 0.0;
+  return objective_.per_j * vehicle_.energy.recuperable_j_per_m() * sample->height;
 }
 
 }  // namespace headland::coverage

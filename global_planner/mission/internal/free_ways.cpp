@@ -49,7 +49,8 @@ class FreeWays {
     options.margin_m = margin_;
     options.cache = planner.cache;
     const auto roadmap = Roadmap::build(area_, mission_.ground, vehicle_, options);
-    if (!roadmap) return {};  // no room for one: the lanes have to do
+    if (!roadmap && roadmap.error().code == ErrorCode::kNoPath) return {};  // the lanes have to do
+    if (!roadmap) return tl::unexpected<Error>(roadmap.error());
     std::vector<Site> sites;
     for (const Goal& goal : goals_) sites.push_back(goal.outside);
     const auto graph = roadmap->connect(sites, mission_.config.cost_weights());
@@ -124,9 +125,7 @@ class FreeWays {
     path.append_straight(transitions_.site(a.site).depart, a.lead_out, 0);
     path.append(between);
     path.append_straight(b.outside.arrive, b.lead_in, 0);
-    if (!mission_.ground.flat() && check_slopes(vehicle_, mission_.ground, path)) return;
-    const auto cost = path_cost(vehicle_, mission_.ground, path, LegKind::kTransit);
-    if (cost) transitions_.offer(a.site, b.site, *cost, std::move(path));
+    transitions_.offer(a.site, b.site, std::move(path));
   }
 
   const Mission& mission_;

@@ -80,7 +80,7 @@ class TourBuilder {
   // The next part of the row at whose cut the vehicle has arrived at work.
   void prolong_row(const TourStop& stop, const ModelTask& task, const DriveCost& cost) {
     PlanLeg& leg = plan_.legs.back();
-    Path path = model_.work_path(v_, stop.task, stop.mode);
+    const Path path = model_.work_path(v_, stop.task, stop.mode);
     plan_.stages.back().path.append(path, static_cast<int>(plan_.legs.size()) - 1);
     leg.cost += cost;
     draw(cost);
@@ -97,8 +97,7 @@ class TourBuilder {
     if (first) leg.from_m = (mode == 0 ? task.begin : task.end) * length_m;
     leg.to_m = (mode == 0 ? task.end : task.begin) * length_m;
     const bool whole = std::abs(std::abs(leg.to_m - leg.from_m) - length_m) < 1e-9;
-    if (whole && !first) leg.from_m = leg.to_m = 0.0;
-    if (whole && first && task.begin == 0.0 && task.end == 1.0) leg.from_m = leg.to_m = 0.0;
+    if (whole) leg.from_m = leg.to_m = 0.0;
   }
 
   void drive_to(int site) {
@@ -115,9 +114,9 @@ class TourBuilder {
     const TourStation& station = model_.problem().stations[static_cast<std::size_t>(stop.station)];
     drive_to(station.site);
     const Charger& charger = model_.mission().farm.chargers[static_cast<std::size_t>(stop.station)];
+    if (stop.end_j <= stop.arrival_j) return;  // merely driven through
     DriveCost cost;
     cost.duration_s = stop.end_s - stop.begin_s;
-    if (stop.end_j <= stop.arrival_j) return;  // merely driven through
     // For as long as the solver says. The battery is fuller than with the solver's margin: it ends
     // at least as full.
     const ChargeCurve curve = lower(charger.curve, battery().acceptance());

@@ -14,12 +14,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr DriveCost kNoWay{kInfinity, kInfinity, kInfinity, kInfinity};
-constexpr int kMostPieces = 64;     // of a row
-constexpr int kPointsToFull = 4;    // of a charging function where the power falls
-constexpr double kIdleTime = 1e-3;  // weight of all vehicles' time beside the last one's
-// Of a second [J, km]: among plans of equal cost the quicker one, with charges no longer than
-// needed.
-constexpr double kTieBreak = 1e-3;
+constexpr int kMostPieces = 64;  // of a row
 
 std::vector<Site> stops_of(const Mission& mission) {
   std::vector<Site> stops;
@@ -36,48 +31,7 @@ std::vector<Site> stops_of(const Mission& mission) {
   return stops;
 }
 
-// Energy by charging time: the curve's corners, and points between where the power changes. The
-// chords lie below the curve, so that the plan never counts on more than there is.
-ChargeFunction charge_function(const ChargeCurve& curve, double capacity) {
-  ChargeFunction function;
-  std::vector<double> socs{0.0};
-  const auto add_until = [&](double soc, int steps) {
-    const double from = socs.back();
-    for (int i = 1; i <= steps; ++i) socs.push_back(from + (soc - from) * i / steps);
-  };
-  for (const ChargePoint& point : curve.points()) {
-    if (point.soc <= socs.back() || point.soc >= 1.0) continue;
-    add_until(point.soc, curve.power(socs.back()) == curve.power(point.soc) ? 1 : kPointsToFull);
-  }
-  add_until(1.0, curve.power(socs.back()) == curve.power(1.0) ? 1 : kPointsToFull);
-  for (const double soc : socs) {
-    function.points.push_back({curve.time(0.0, soc, capacity), soc * capacity});
-  }
-  return function;
-}
-
 }  // namespace
-
-Path slice(const Path& path, double from, double to) {
-  Path part;
-  double begin = 0.0;
-  for (PathPiece piece : path.pieces()) {
-    const double end = begin + piece.length;
-    const double first = std::max(from, begin);
-    const double last = std::min(to, end);
-    if (last > first) {
-      if (first > begin) {
-        const double gone = first - begin;
-        piece.start = piece.pose_at(gone);
-        piece.curvature += piece.sharpness * gone;
-      }
-      piece.length = last - first;
-      part.append(piece);
-    }
-    begin = end;
-  }
-  return part;
-}
 
 const Vehicle& TourModel::vehicle_of(const Profile& profile) const {
   return mission_->vehicles[static_cast<std::size_t>(profile.vehicle)].vehicle;
@@ -99,7 +53,7 @@ Result<TourModel> TourModel::build(const Mission& mission) {
   if (auto error = check_standing_places(mission)) return tl::unexpected<Error>(std::move(*error));
   if (auto done = model.build_profiles(); !done) return tl::unexpected<Error>(done.error());
   if (auto done = model.split_rows(); !done) return tl::unexpected<Error>(done.error());
-  if (auto done = model.price_work(); !done) return tl::unexpected<Error>(done.error());
+  model.price_work();
   model.build_problem();
   return model;
 }
@@ -154,8 +108,8 @@ Path TourModel::row_stretch(const Vehicle& vehicle, int row, int entry, double f
   Path path = row_path(line, entry, vehicle.turning_radius());
   if (from <= 0.0 && to >= 1.0) return path;
   const double length = path.length();
-  return entry == 0 ? slice(path, from * length, to * length)
-                    : slice(path, (1.0 - to) * length, (1.0 - from) * length);
+  return entry == 0 ? path.slice(from * length, to * length)
+                    : path.slice((1.0 - to) * length, (1.0 - from) * length);
 }
 
 DriveCost TourModel::price(const Vehicle& vehicle, const Path& path, LegKind kind) const {
@@ -244,7 +198,7 @@ Result<void> TourModel::split_rows() {
   return {};
 }
 
-Result<void> TourModel::price_work() {
+void TourModel::price_work() {
   for (Profile& profile : profiles_) {
     const Vehicle& vehicle = vehicle_of(profile);
     for (const ModelTask& task : tasks_) {
@@ -263,7 +217,6 @@ Result<void> TourModel::price_work() {
       profile.work.push_back(std::move(modes));
     }
   }
-  return {};
 }
 
 const TourModel::Cut* TourModel::cut_of(int site) const {
@@ -387,101 +340,6 @@ std::string TourModel::site_name(int site) const {
   const RowRef ref = mission_->rows[static_cast<std::size_t>(cut->row)];
   return fmt::format("row {} at {:.0f} m", mission_->farm.row_name(ref),
                      cut->at * length(mission_->farm.row(ref).line));
-}
-
-TourLeg TourModel::tour_leg(const DriveCost& cost) const {
-  if (!std::isfinite(cost.energy_j)) return {kInfinity, 0.0, 0.0, 0.0};
-  CostWeights weights = mission_->config.cost_weights();
-  weights.per_s = 0.0;  // time counts by the vehicles' durations
-  return {cost.value(weights), cost.duration_s, margined(cost.energy_j), margined(cost.peak_j)};
-}
-
-TourProfile TourModel::tour_profile(const Profile& profile) const {
-  TourProfile result;
-  const int count = base_sites() + static_cast<int>(cuts_.size());
-  result.ways.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(count));
-  for (int from = 0; from < count; ++from) {
-    for (int to = 0; to < count; ++to) result.ways.push_back(tour_leg(way(profile, from, to)));
-  }
-  for (const std::vector<DriveCost>& modes : profile.work) {
-    result.work.emplace_back();
-    for (const DriveCost& cost : modes) result.work.back().push_back(tour_leg(cost));
-  }
-  return result;
-}
-
-TourVehicle TourModel::tour_vehicle(int v) const {
-  const MissionVehicle& given = mission_->vehicles[static_cast<std::size_t>(v)];
-  const Battery& battery = given.vehicle.battery;
-  TourVehicle vehicle;
-  vehicle.profile = profile_of_vehicle_[static_cast<std::size_t>(v)];
-  vehicle.start = start(v);
-  vehicle.finish = finish(v);
-  vehicle.battery_j = battery.capacity_j();
-  vehicle.start_energy_j = given.soc * battery.capacity_j();
-  vehicle.reserve_j = battery.reserve_j();
-  vehicle.finish_energy_j = battery.reserve_j() + margined(escape_j(v, finish(v)));
-  vehicle.latest_s = given.shift_s / (1.0 + mission_->config.planner.time_margin_ratio);
-  for (const Charger& c : mission_->farm.chargers) {
-    vehicle.charging.push_back(
-        charge_function(lower(c.curve, battery.acceptance()), battery.capacity_j()));
-  }
-  return vehicle;
-}
-
-const TaskTerms& TourModel::terms_of(const ModelTask& task) const {
-  return task.visit >= 0 ? mission_->visits[static_cast<std::size_t>(task.visit)].terms
-                         : mission_->row_terms[static_cast<std::size_t>(task.row)];
-}
-
-void TourModel::build_problem() {
-  problem_.sites = base_sites() + static_cast<int>(cuts_.size());
-  for (const Profile& profile : profiles_) problem_.profiles.push_back(tour_profile(profile));
-  for (int c = 0; c < chargers(); ++c) {
-    problem_.stations.push_back(
-        {charger(c), mission_->farm.chargers[static_cast<std::size_t>(c)].slots});
-  }
-  for (int v = 0; v < vehicles(); ++v) problem_.vehicles.push_back(tour_vehicle(v));
-  const CostWeights weights = mission_->config.cost_weights();
-  const double per_s = weights.per_s;
-  problem_.duration_weight = (vehicles() == 1 ? per_s : kIdleTime * per_s) +
-                             kTieBreak * (weights.per_j + kTieBreak * weights.per_m);
-  problem_.span_weight = vehicles() == 1 ? 0.0 : per_s;
-
-  double most = 1.0;  // a bound on the cost of a task done
-  for (const TourProfile& profile : problem_.profiles) {
-    for (const TourLeg& leg : profile.ways) {
-      if (std::isfinite(leg.cost)) most = std::max(most, leg.cost + per_s * leg.duration_s);
-    }
-    for (const auto& modes : profile.work) {
-      for (const TourLeg& leg : modes) {
-        if (std::isfinite(leg.cost)) most = std::max(most, leg.cost + per_s * leg.duration_s);
-      }
-    }
-  }
-  double least_value = kInfinity;
-  for (const ModelTask& task : tasks_) least_value = std::min(least_value, terms_of(task).value);
-  for (const ModelTask& task : tasks_) {
-    const TaskTerms& terms = terms_of(task);
-    TourTask work;
-    if (task.visit >= 0) {
-      work.modes = {{visit(task.visit), visit(task.visit)}};
-    } else {
-      for (const int entry : {0, 1}) {
-        const int at_begin = cut_site(task.row, task.begin, entry);
-        const int at_end = cut_site(task.row, task.end, entry);
-        work.modes.push_back(entry == 0 ? TourMode{at_begin, at_end} : TourMode{at_end, at_begin});
-      }
-    }
-    work.earliest_s = terms.earliest_s;
-    work.latest_s = terms.latest_s / (1.0 + mission_->config.planner.time_margin_ratio);
-    if (mission_->config.allow_dropping) {
-      // Any task is worth more than all driving: it is left out only where it cannot be done.
-      work.reward =
-          terms.value / least_value * most * 10.0 * static_cast<double>(tasks_.size() + 1);
-    }
-    problem_.tasks.push_back(std::move(work));
-  }
 }
 
 }  // namespace headland::mission

@@ -88,7 +88,7 @@ class TourModel {
   bool lasts(const Profile& profile, int vehicle, int row, double begin, double end,
              double& short_j) const;
   Result<std::vector<double>> cuts_of(int row) const;
-  Result<void> price_work();
+  void price_work();
   const TaskTerms& terms_of(const ModelTask& task) const;
   void build_problem();
   TourLeg tour_leg(const DriveCost& cost) const;
@@ -110,8 +110,5 @@ class TourModel {
   std::vector<Cut> cuts_;  // of the sites after the base sites
   TourProblem problem_;
 };
-
-/// The stretch of a path between two driven distances [m].
-Path slice(const Path& path, double from, double to);
 
 }  // namespace headland::mission

@@ -20,8 +20,7 @@ GoalGraph::Edge no_way() { return {{kInfinity, kInfinity, kInfinity, kInfinity},
 WaySearch::WaySearch(const RoadGraph& graph, const TrackMaker& tracks, const Vehicle& vehicle,
                      const CostWeights& objective)
     : graph_(graph), tracks_(tracks), objective_(objective) {
-  potential_per_metre_ = objective.per_j * vehicle.energy.recuperation_efficiency_ratio *
-                         vehicle.energy.total_mass() * kGravity;
+  potential_per_metre_ = objective.per_j * vehicle.energy.recuperable_j_per_m();
   add_arcs();
 }
 

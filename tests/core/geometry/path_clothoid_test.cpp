@@ -142,5 +142,30 @@ TEST(PathOfClothoids, TakesAFittedClothoid) {
   EXPECT_EQ(path.segments().size(), 1U);
 }
 
+TEST(Path, ASliceIsAStretchOfIt) {
+  Path path;
+  path.append_straight({0.0, 0.0, 0.3}, 5.0, 0);
+  Curve arc;
+  arc.add({0.2, 4.0});
+  arc.add({-0.1, -2.0});
+  path.append(arc, path.end_pose(), 1);
+  path.append({path.end_pose(), 0.1, 3.0, Gear::kForward, 2, -0.05});
+  for (const auto& [from, to] : {std::pair(0.0, 14.0), {3.0, 7.5}, {8.0, 10.0}, {10.5, 13.0}}) {
+    const Path part = path.slice(from, to);
+    ASSERT_NEAR(part.length(), to - from, 1e-12);
+    for (double s = 0.05; s < to - from; s += 0.1) {
+      const PathSample a = part.at(s);
+      const PathSample b = path.at(from + s);
+      EXPECT_NEAR((a.pose.position() - b.pose.position()).norm(), 0.0, 1e-9) << from + s;
+      EXPECT_NEAR(wrap_angle(a.pose.yaw - b.pose.yaw), 0.0, 1e-9) << from + s;
+      EXPECT_NEAR(a.curvature, b.curvature, 1e-12) << from + s;
+      EXPECT_EQ(a.leg, b.leg) << from + s;
+      EXPECT_EQ(a.gear, b.gear) << from + s;
+    }
+  }
+  EXPECT_TRUE(path.slice(5.0, 5.0).empty());
+  EXPECT_EQ(path.slice(-1.0, 99.0).length(), path.length());
+}
+
 }  // namespace
 }  // namespace headland

@@ -219,21 +219,5 @@ TEST(FleetPlan, SolutionsOfItsTourProblemPassTheCheck) {
   }
 }
 
-TEST(FleetPlan, SlicesOfAPathAreItsStretches) {
-  Path path;
-  path.append_straight({0.0, 0.0, 0.3}, 5.0, 0);
-  Curve arc;
-  arc.add({0.2, 4.0});
-  path.append(arc, path.end_pose(), 0);
-  const Path part = mission::slice(path, 3.0, 7.5);
-  EXPECT_NEAR(part.length(), 4.5, 1e-12);
-  for (const double s : {0.0, 1.0, 2.0, 3.0, 4.5}) {
-    const Pose2 a = part.at(s).pose;
-    const Pose2 b = path.at(3.0 + s).pose;
-    EXPECT_NEAR((a.position() - b.position()).norm(), 0.0, 1e-9);
-    EXPECT_NEAR(wrap_angle(a.yaw - b.yaw), 0.0, 1e-9);
-  }
-}
-
 }  // namespace
 }  // namespace headland
