@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/base/result.hpp"
 #include "core/geometry/path.hpp"
 #include "core/model/kinematics.hpp"
 
@@ -14,7 +15,17 @@ struct Reference {
   std::vector<double> leg_speed;  ///< [m/s], one per leg number of the path
 };
 
-enum class TrackStatus { kTracking, kGearChange, kDone, kPathLost };
+enum class TrackStatus {
+  kTracking,
+  kGearChange,
+  kDone,
+  // Failures: the command is a stop.
+  kPathLost,     ///< too far from the path
+  kBadState,     ///< the measured state, or the cycle time, is no number
+  kSolverFailed  ///< no usable plan for too long
+};
+
+constexpr bool failed(TrackStatus status) { return status >= TrackStatus::kPathLost; }
 
 struct TrackOutput {
   Command command;
@@ -22,26 +33,29 @@ struct TrackOutput {
   double s = 0.0;  ///< progress along the reference [m]
 };
 
-/// Turns a reference and a measured state into commands, tick by tick. Ticks do not allocate and do
-/// not throw; any failure is a stop command with a status.
+/// Turns a reference and an estimated state into commands, tick by tick. Ticks do not allocate and
+/// do not throw; any failure is a stop command with a status.
 class Tracker {
  public:
   virtual ~Tracker() = default;
-  /// Starts on a new reference, which must outlive its use.
-  void start(const Reference& reference) {
+  /// Starts on a new reference, which must outlive its use. An error says what of it the vehicle
+  /// cannot drive; the tracker then stands.
+  Result<void> start(const Reference& reference) {
     reference_ = &reference;
-    do_start();
+    Result<void> started = do_start();
+    if (!started) reference_ = nullptr;
+    return started;
   }
   /// One tick of `dt` [s].
-  TrackOutput step(const VehicleState& measured, double dt) {
+  TrackOutput step(const VehicleEstimate& estimate, double dt) {
     return reference_ == nullptr ? TrackOutput{{}, TrackStatus::kPathLost, 0.0}
-                                 : do_step(measured, dt);
+                                 : do_step(estimate, dt);
   }
 
  protected:
   const Reference& reference() const { return *reference_; }
-  virtual void do_start() = 0;
-  virtual TrackOutput do_step(const VehicleState& measured, double dt) = 0;
+  virtual Result<void> do_start() = 0;
+  virtual TrackOutput do_step(const VehicleEstimate& estimate, double dt) = 0;
 
  private:
   const Reference* reference_ = nullptr;

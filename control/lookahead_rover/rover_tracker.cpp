@@ -19,7 +19,7 @@ bool is_finite(const VehicleState& state) {
 RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config)
     : vehicle_(vehicle), config_(config), filter_(config.filter) {}
 
-void RoverTracker::do_start() {
+Result<void> RoverTracker::do_start() {
   profile_.build(reference(), vehicle_.acceleration_mps2);
   filter_.reset();
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kDriving;
@@ -27,6 +27,7 @@ void RoverTracker::do_start() {
   s_ = 0.0;
   standing_left_ = 0.0;
   has_last_ = false;
+  return {};
 }
 
 // The vehicle's own motion since the last tick [m, map]: the exact arc of the mean speed and the
@@ -95,8 +96,9 @@ Command RoverTracker::pivot(const VehicleState& measured, const Errors& errors, 
   return {0.0, 0.0, std::clamp(rate, -config_.max_yaw_rate_radps, config_.max_yaw_rate_radps)};
 }
 
-TrackOutput RoverTracker::do_step(const VehicleState& measured, double dt) {
-  if (!is_finite(measured)) return stand(TrackStatus::kPathLost);  // and keep it from the filter
+TrackOutput RoverTracker::do_step(const VehicleEstimate& estimate, double dt) {
+  const VehicleState& measured = estimate.state;
+  if (!is_finite(measured)) return stand(TrackStatus::kBadState);  // and keep it from the filter
   filter_.update(odometry(measured, dt), measured.pose.position());
   const Point2 position = filter_.position();
   last_ = measured;

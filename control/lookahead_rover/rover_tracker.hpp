@@ -77,8 +77,8 @@ class RoverTracker : public Tracker {
     double remaining = 0.0;  // to the end of the segment [m]
   };
 
-  void do_start() override;
-  TrackOutput do_step(const VehicleState& measured, double dt) override;
+  Result<void> do_start() override;
+  TrackOutput do_step(const VehicleEstimate& estimate, double dt) override;
 
   Point2 odometry(const VehicleState& measured, double dt) const;
   Errors errors(const VehicleState& measured, const Point2& position, double dt) const;

@@ -24,7 +24,7 @@ bool is_finite(const VehicleState& state) {
 PurePursuit::PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config)
     : vehicle_(vehicle), config_(config), filter_(config.filter) {}
 
-void PurePursuit::do_start() {
+Result<void> PurePursuit::do_start() {
   profile_.build(reference(), vehicle_.acceleration_mps2,
                  steering_zones(reference(), vehicle_, config_.plan));
   plan_.build(reference(), profile_, vehicle_, config_.plan);
@@ -36,6 +36,7 @@ void PurePursuit::do_start() {
   changing_gear_ = false;
   has_last_ = false;
   steering_left_ = longest_steering();
+  return {};
 }
 
 // The vehicle's own motion since the last tick [m, map]: mean speed along the mean heading.
@@ -165,9 +166,10 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
           s_};
 }
 
-TrackOutput PurePursuit::do_step(const VehicleState& measured, double dt) {
+TrackOutput PurePursuit::do_step(const VehicleEstimate& estimate, double dt) {
+  const VehicleState& measured = estimate.state;
   // And keep it from the filter.
-  if (!is_finite(measured) || !(dt > 0.0)) return {{}, TrackStatus::kPathLost, s_};
+  if (!is_finite(measured) || !(dt > 0.0)) return {{}, TrackStatus::kBadState, s_};
   filter_.update(odometry(measured, dt), measured.pose.position());
   last_ = measured;
   has_last_ = true;

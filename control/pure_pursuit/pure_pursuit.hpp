@@ -69,8 +69,8 @@ class PurePursuit : public Tracker {
   // Stopping: past the end, not yet still.
   enum class Mode { kStanding, kDriving, kStopping, kDone };
 
-  void do_start() override;
-  TrackOutput do_step(const VehicleState& measured, double dt) override;
+  Result<void> do_start() override;
+  TrackOutput do_step(const VehicleEstimate& estimate, double dt) override;
 
   const PathSegment& segment() const {
     return reference().path.segments()[static_cast<std::size_t>(segment_)];

@@ -5,34 +5,59 @@
 #include <cmath>
 
 namespace headland {
+namespace {
+
+
+// What of the way to a command an actuator with a first-order lag makes in `dt`.
+double lagged(double way, double lag, double dt) {
+  return lag > 0.0 ? way * (1.0 - std::exp(-dt / lag)) : way;
+}
+
+}  // namespace
 
 double step_steering(const Vehicle& vehicle, double actual, double command, double dt) {
   const double limit = vehicle.max_steering_rad();
   const double wanted = std::clamp(command, -limit, limit) - actual;
-  const double lagged = vehicle.steering_lag_s > 0.0
-                            ? wanted * (1.0 - std::exp(-dt / vehicle.steering_lag_s))
-                            : wanted;
   const double most = vehicle.steering_rate_radps * dt;
-  return std::clamp(actual + std::clamp(lagged, -most, most), -limit, limit);
+  return std::clamp(actual + std::clamp(lagged(wanted, vehicle.steering_lag_s, dt), -most, most),
+                    -limit, limit);
+}
+
+double step_speed(const Vehicle& vehicle, double actual, double command, double dt) {
+  const double most = vehicle.acceleration_mps2 * dt;
+  return actual + std::clamp(lagged(command - actual, vehicle.speed_lag_s, dt), -most, most);
+}
+
+double step_yaw_rate(const Vehicle& vehicle, double actual, double command, double dt) {
+  const double most = vehicle.yaw_acceleration_radps2 * dt;
+  const double way = lagged(command - actual, vehicle.steering_lag_s, dt);
+  // An immediate actuator has the command to the last bit.
+  if (vehicle.steering_lag_s <= 0.0 && std::abs(way) <= most) return command;
+  return actual + std::clamp(way, -most, most);
 }
 
 VehicleState step_vehicle(const Vehicle& vehicle, const VehicleState& state, const Command& command,
-                          double dt) {
-  const double most = vehicle.acceleration_mps2 * dt;
+                          double dt, const Slip& slip) {
   VehicleState next = state;
-  next.speed = state.speed + std::clamp(command.speed - state.speed, -most, most);
-  const double distance = 0.5 * (state.speed + next.speed) * dt;
+  next.speed = step_speed(vehicle, state.speed, command.speed, dt);
+  const double keep = 1.0 - slip.loss_ratio;
+  const double distance = 0.5 * (state.speed + next.speed) * dt * keep;
+  const double bend = std::cos(slip.side_rad) / vehicle.wheelbase_m;
+  // Along the direction of travel, which the slip turns away from the heading.
+  const Pose2 along{state.pose.x, state.pose.y, state.pose.yaw + slip.side_rad};
   if (vehicle.steering == Steering::kAckermann) {
     next.steering = step_steering(vehicle, state.steering, command.steering, dt);
-    next.pose = advance(state.pose, std::tan(next.steering) / vehicle.wheelbase_m, distance);
+    const double angle = next.steering + slip.steering_offset_rad;
+    next.pose = advance(along, bend * std::tan(angle), distance);
   } else {
-    const double turn = command.yaw_rate * dt;
-    next.steering = 0.0;
+    next.yaw_rate = step_yaw_rate(vehicle, state.yaw_rate, command.yaw_rate, dt);
+    const double turn = keep * next.yaw_rate * dt;
+    const double offset = bend * std::tan(slip.steering_offset_rad);
     next.pose = std::abs(distance) > 1e-12
-                    ? advance(state.pose, turn / distance, distance)
-                    : Pose2{state.pose.x, state.pose.y, state.pose.yaw + turn};
+                    ? advance(along, turn / distance + offset, distance)
+                    : Pose2{state.pose.x, state.pose.y, along.yaw + turn};
   }
-  next.pose.yaw = wrap_angle(next.pose.yaw);
+  next.pose.yaw = wrap_angle(next.pose.yaw - slip.side_rad);
   return next;
 }
 

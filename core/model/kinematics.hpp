@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/geometry/pose2.hpp"
+#include "core/model/slip.hpp"
 #include "core/model/vehicle.hpp"
 
 namespace headland {
@@ -18,20 +19,39 @@ struct Command {
 /// Motion state of a vehicle.
 struct VehicleState {
   Pose2 pose;             ///< T_map_base
-  double speed = 0.0;     ///< [m/s], signed
-  double steering = 0.0;  ///< actual steering angle [rad]
+  double speed = 0.0;     ///< of the wheels [m/s], signed
+  double steering = 0.0;  ///< actual steering angle [rad]; Ackermann
+  double yaw_rate = 0.0;  ///< of the wheels [rad/s]; differential
+};
+
+/// What a controller goes by: the state as measured or estimated, and the slip if it is known.
+struct VehicleEstimate {
+  VehicleEstimate() = default;
+  /// Converts on purpose: no slip.
+  VehicleEstimate(const VehicleState& measured) : state(measured) {}
+  VehicleEstimate(const VehicleState& measured, const Slip& known) : state(measured), slip(known) {}
+
+  VehicleState state;
+  Slip slip;
 };
 
 /// Moves the actual steering angle towards `command` for `dt` [s]: first-order lag, then rate
 /// limit, then the angle's limit.
 double step_steering(const Vehicle& vehicle, double actual, double command, double dt);
 
-/// The state after `dt` [s] under a held command. Speed follows at the vehicle's acceleration,
-/// steering through step_steering; the pose moves along the exact arc of the mean speed and the
-/// new steering (Ackermann) or of the commanded yaw rate (differential, pivot included).
-/// Deterministic, does not allocate.
+/// The speed of the wheels after `dt` [s]: first-order lag, then the limit of acceleration.
+double step_speed(const Vehicle& vehicle, double actual, double command, double dt);
+
+/// The yaw rate of a differential vehicle's wheels after `dt` [s]: the lag of the steering, then the
+/// limit of yaw acceleration.
+double step_yaw_rate(const Vehicle& vehicle, double actual, double command, double dt);
+
+/// The state after `dt` [s] under a held command, which acts at once (dead times are the caller's:
+/// CommandDelay). Speed, steering and yaw rate as in the functions above; the pose moves along the
+/// exact arc of the mean speed and the new steering (Ackermann) or yaw rate (differential, pivot
+/// included), bent and shortened by the slip as in MotionModel. Deterministic, does not allocate.
 VehicleState step_vehicle(const Vehicle& vehicle, const VehicleState& state, const Command& command,
-                          double dt);
+                          double dt, const Slip& slip = {});
 
 /// Wheel speeds [rad/s] of a differential vehicle (Cornejo et al. 2018, with the half track that
 /// seed 004's Eqs. 1-2 leave out).

@@ -70,11 +70,15 @@ struct Vehicle {
   double max_steering_deg = 35.0;
   double steering_rate_radps = 0.6;
   double steering_lag_s = 0.0;
+  double steering_dead_time_s = 0.0;
   double min_turning_radius_m = 0.0;
   double work_speed_mps = 1.5;
   double transit_speed_mps = 2.0;
   double turn_speed_mps = 1.0;
   double acceleration_mps2 = 1.0;
+  double speed_lag_s = 0.0;
+  double speed_dead_time_s = 0.0;
+  double yaw_acceleration_radps2 = 1000.0;
   bool can_reverse = true;
   double gear_change_s = 2.0;
   double max_pitch_deg = 20.0;
@@ -111,7 +115,9 @@ struct Vehicle {
     v("steering_rate_radps", steering_rate_radps, config::Range{0.01, 100.0},
       "Fastest change of the steering angle [rad/s]");
     v("steering_lag_s", steering_lag_s, config::Range{0.0, 2.0},
-      "Time constant of the steering actuator [s]");
+      "Time constant of the steering actuator, or of a differential vehicle's yaw rate [s]");
+    v("steering_dead_time_s", steering_dead_time_s, config::Range{0.0, 2.0},
+      "From a steering or yaw rate command until the actuator begins to follow [s]");
     v("min_turning_radius_m", min_turning_radius_m, config::Range{0.0, 100.0},
       "Tightest planned turn [m]; 0: what the steering allows");
     v("work_speed_mps", work_speed_mps, config::Range{0.05, 20.0}, "In rows [m/s]");
@@ -120,6 +126,11 @@ struct Vehicle {
     v("turn_speed_mps", turn_speed_mps, config::Range{0.05, 20.0}, "In headland turns [m/s]");
     v("acceleration_mps2", acceleration_mps2, config::Range{0.01, 100.0},
       "Speeding up and braking [m/s2]");
+    v("speed_lag_s", speed_lag_s, config::Range{0.0, 5.0}, "Time constant of the drive [s]");
+    v("speed_dead_time_s", speed_dead_time_s, config::Range{0.0, 2.0},
+      "From a speed command until the drive begins to follow [s]");
+    v("yaw_acceleration_radps2", yaw_acceleration_radps2, config::Range{0.01, 1000.0},
+      "Fastest change of a differential vehicle's yaw rate [rad/s2]; 1000: immediate");
     v("can_reverse", can_reverse, "May plans use the reverse gear");
     v("gear_change_s", gear_change_s, config::Range{0.0, 600.0},
       "Standing time of a gear change [s]");

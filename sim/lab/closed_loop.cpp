@@ -65,6 +65,22 @@ void count_rows(std::span<const VehiclePlan> plans, std::span<const Run> runs,
       std::count_if(done.begin(), done.end(), [](const auto& row) { return row.second; }));
 }
 
+const char* describe(TrackStatus failure) {
+  switch (failure) {
+    case TrackStatus::kPathLost:
+      return "the tracker lost the path";
+    case TrackStatus::kBadState:
+      return "the measured state is no number";
+    case TrackStatus::kSolverFailed:
+      return "the tracker's solver failed";
+    case TrackStatus::kTracking:
+    case TrackStatus::kGearChange:
+    case TrackStatus::kDone:
+      break;
+  }
+  return "the tracker stopped";
+}
+
 // One vehicle on its plan, tick by tick.
 class Driver {
  public:
@@ -128,7 +144,9 @@ class Driver {
     progress_s_ = 0.0;
     if (stage().path.empty()) return arrive(time);
     reference_ = Reference{stage().path, leg_speed_};  // the tracker keeps a pointer to it
-    tracker_->start(reference_);
+    if (const auto started = tracker_->start(reference_); !started) {
+      return give_up(started.error().what, time);
+    }
     // Nothing drives a stage at less than a tenth of its planned pace.
     give_up_at_ = time + 60.0 + 10.0 * planned_duration(stage());
     state_ = State::kDriving;
@@ -140,7 +158,7 @@ class Driver {
     if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < 1e-9) {
       return arrive(time);
     }
-    if (output.status == TrackStatus::kPathLost) return give_up("the tracker lost the path", time);
+    if (failed(output.status)) return give_up(describe(output.status), time);
     const Path& path = stage().path;
     vehicle_.step(output.command, plan_.legs[static_cast<std::size_t>(path.at(output.s).leg)].kind,
                   dt);
@@ -229,7 +247,7 @@ class Driver {
     run_.metrics.min_soc = std::min(run_.metrics.min_soc, vehicle_.soc());
   }
 
-  void give_up(const char* why, double time) {
+  void give_up(const std::string& why, double time) {
     const bool moved = !run_.trace.empty();
     const int leg = moved ? run_.trace.back().leg : 0;
     run_.metrics.reason = fmt::format("{}: {} after {:.1f} m, on leg '{}'", plan_.id, why,

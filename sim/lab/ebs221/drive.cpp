@@ -126,7 +126,7 @@ FieldDrive drive_our_field(Tracker& tracker, const Vehicle& vehicle, const Refer
   for (int k = 0; k < most; ++k) {
     const TrackOutput out = tracker.step(state, period);
     drive.completed = out.status == TrackStatus::kDone && std::abs(state.speed) < kStanding;
-    if (drive.completed || out.status == TrackStatus::kPathLost) break;
+    if (drive.completed || failed(out.status)) break;
     drive.duration += period;
     drive.wrong_gear_count += watch.wrong(out.s, state.speed) ? 1 : 0;
     const Point2 before = state.pose.position();

@@ -86,7 +86,7 @@ DrivenTrack drive_ours(const RoverDrive& drive, const RoverTrackerConfig& config
     measured.speed *= drive.odometry_scale_ratio;
     const TrackOutput out = tracker.step(measured, drive.cycle_s);
     track.completed = out.status == TrackStatus::kDone;
-    if (out.status == TrackStatus::kDone || out.status == TrackStatus::kPathLost) break;
+    if (out.status == TrackStatus::kDone || failed(out.status)) break;
     move(drive, vehicle, out.command, state);
     track.positions.push_back(state.pose.position());
   }

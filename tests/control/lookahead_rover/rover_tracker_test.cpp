@@ -62,7 +62,7 @@ Drive drive(RoverTracker& tracker, const Reference& reference, VehicleState stat
     const double distance =
         reference.path.project(state.pose.position(), std::max(0.0, s - 0.5), s + 0.5).distance;
     result.max_error = std::max(result.max_error, distance);
-    if (out.status == TrackStatus::kDone || out.status == TrackStatus::kPathLost) break;
+    if (out.status == TrackStatus::kDone || failed(out.status)) break;
   }
   return result;
 }
@@ -233,7 +233,7 @@ TEST(RoverTracker, StopsOnAMeasurementThatIsNotANumberAndGoesOnAfterIt) {
   VehicleState broken;
   broken.pose.x = std::nan("");
   const TrackOutput out = tracker.step(broken, kDt);
-  EXPECT_EQ(out.status, TrackStatus::kPathLost);
+  EXPECT_EQ(out.status, TrackStatus::kBadState);
   EXPECT_EQ(out.command.speed, 0.0);
   const TrackOutput after = tracker.step({}, kDt);
   EXPECT_EQ(after.status, TrackStatus::kTracking);

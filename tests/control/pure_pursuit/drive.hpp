@@ -102,7 +102,7 @@ inline Drive drive(const Vehicle& vehicle, const PurePursuitConfig& config,
     result.outputs.push_back(out);
     result.last = out.status;
     result.s = out.s;
-    if (out.status == TrackStatus::kDone || out.status == TrackStatus::kPathLost) break;
+    if (out.status == TrackStatus::kDone || failed(out.status)) break;
   }
   result.turn_speed = turn_ticks > 0 ? turn_distance / (turn_ticks * dt) : 0.0;
   result.end_distance = (state.pose.position() - path.end_pose().position()).norm();
