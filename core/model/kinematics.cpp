@@ -7,7 +7,6 @@
 namespace headland {
 namespace {
 
-
 // What of the way to a command an actuator with a first-order lag makes in `dt`.
 double lagged(double way, double lag, double dt) {
   return lag > 0.0 ? way * (1.0 - std::exp(-dt / lag)) : way;
@@ -53,9 +52,8 @@ VehicleState step_vehicle(const Vehicle& vehicle, const VehicleState& state, con
     next.yaw_rate = step_yaw_rate(vehicle, state.yaw_rate, command.yaw_rate, dt);
     const double turn = keep * next.yaw_rate * dt;
     const double offset = bend * std::tan(slip.steering_offset_rad);
-    next.pose = std::abs(distance) > 1e-12
-                    ? advance(along, turn / distance + offset, distance)
-                    : Pose2{state.pose.x, state.pose.y, along.yaw + turn};
+    next.pose = std::abs(distance) > 1e-12 ? advance(along, turn / distance + offset, distance)
+                                           : Pose2{state.pose.x, state.pose.y, along.yaw + turn};
   }
   next.pose.yaw = wrap_angle(next.pose.yaw - slip.side_rad);
   return next;

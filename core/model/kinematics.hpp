@@ -42,8 +42,8 @@ double step_steering(const Vehicle& vehicle, double actual, double command, doub
 /// The speed of the wheels after `dt` [s]: first-order lag, then the limit of acceleration.
 double step_speed(const Vehicle& vehicle, double actual, double command, double dt);
 
-/// The yaw rate of a differential vehicle's wheels after `dt` [s]: the lag of the steering, then the
-/// limit of yaw acceleration.
+/// The yaw rate of a differential vehicle's wheels after `dt` [s]: the lag of the steering, then
+/// the limit of yaw acceleration.
 double step_yaw_rate(const Vehicle& vehicle, double actual, double command, double dt);
 
 /// The state after `dt` [s] under a held command, which acts at once (dead times are the caller's:

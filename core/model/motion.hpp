@@ -98,7 +98,7 @@ class MotionModel {
       along << cos(yaw + w(kSide)), sin(yaw + w(kSide));
     }
     Eigen::Matrix<T, 2, 1> velocity() const { return speed * along; }
-    T speed;                     // [m/s]
+    T speed;                       // [m/s]
     Eigen::Matrix<T, 2, 1> along;  // direction of travel
   };
 

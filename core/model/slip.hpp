@@ -6,8 +6,8 @@ namespace headland {
 /// How the ground lets a vehicle down: what its wheels and its steering promise, against what it
 /// does. All zero: the ideal kinematics.
 struct Slip {
-  /// Longitudinal slip s: the vehicle goes (1 - s) times as far as its wheels roll; below zero it is
-  /// pushed.
+  /// Longitudinal slip s: the vehicle goes (1 - s) times as far as its wheels roll; below zero it
+  /// is pushed.
   double loss_ratio = 0.0;
   /// Side slip beta [rad]: the direction of travel against the heading, positive left. In reverse
   /// the vehicle drives against that direction.

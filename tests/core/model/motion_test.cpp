@@ -10,8 +10,9 @@ namespace headland {
 namespace {
 
 Drive<double> random_drive(RandomStream& random) {
-  return make_drive(random.uniform(-3.0, 3.0), random.uniform(-0.6, 0.6),
-                    {random.uniform(-0.1, 0.4), random.uniform(-0.2, 0.2), random.uniform(-0.1, 0.1)});
+  return make_drive(
+      random.uniform(-3.0, 3.0), random.uniform(-0.6, 0.6),
+      {random.uniform(-0.1, 0.4), random.uniform(-0.2, 0.2), random.uniform(-0.1, 0.1)});
 }
 
 const MotionModel kModels[] = {MotionModel(Steering::kAckermann, 1.5),
@@ -24,7 +25,8 @@ TEST(MotionModel, DerivativesAreThoseOfFiniteDifferences) {
     for (int trial = 0; trial < 200; ++trial) {
       const Drive<double> drives[2] = {random_drive(random), random_drive(random)};
       MotionModel::Jacobian<double> by[2];
-      const Eigen::Vector3d at = model.displacement<double>(drives[0], drives[1], 0.2, by[0], by[1]);
+      const Eigen::Vector3d at =
+          model.displacement<double>(drives[0], drives[1], 0.2, by[0], by[1]);
       EXPECT_EQ(at, model.displacement<double>(drives[0], drives[1], 0.2));
       for (int which = 0; which < 2; ++which) {
         for (int i = 0; i < kDriveSize; ++i) {
@@ -100,7 +102,8 @@ TEST(MotionModel, TurnForCancelsTheSlip) {
       const double speed = random.uniform(0.2, 2.0);
       const double curvature = random.uniform(-0.5, 0.5);
       const Drive<double> drive = make_drive(speed, model.turn_for(curvature, speed, slip), slip);
-      EXPECT_NEAR(model.yaw_rate<double>(drive), speed * (1.0 - slip.loss_ratio) * curvature, 1e-12);
+      EXPECT_NEAR(model.yaw_rate<double>(drive), speed * (1.0 - slip.loss_ratio) * curvature,
+                  1e-12);
     }
   }
 }
