@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/drivable.hpp"
+
 namespace headland {
 namespace {
 
@@ -35,7 +37,7 @@ Result<void> PurePursuit::do_start() {
   gear_left_ = 0.0;
   changing_gear_ = false;
   has_last_ = false;
-  steering_left_ = longest_steering();
+  steering_left_ = longest_steering(vehicle_);
   return {};
 }
 
@@ -94,12 +96,6 @@ double PurePursuit::planned_angle() const {
   return std::clamp(std::atan(vehicle_.wheelbase_m * curvature), -limit, limit);
 }
 
-// Long enough for the wheels to turn from lock to lock, so that stuck wheels cannot hold it up.
-double PurePursuit::longest_steering() const {
-  return 2.0 * vehicle_.max_steering_rad() / vehicle_.steering_rate_radps +
-         10.0 * vehicle_.steering_lag_s + 0.5;
-}
-
 TrackOutput PurePursuit::stop(const VehicleState& measured, TrackStatus status) const {
   return {{0.0, measured.steering, 0.0}, status, s_};
 }
@@ -128,7 +124,7 @@ TrackOutput PurePursuit::arrive(const VehicleState& measured) {
   mode_ = Mode::kStanding;
   changing_gear_ = true;
   gear_left_ = vehicle_.gear_change_s;
-  steering_left_ = longest_steering();
+  steering_left_ = longest_steering(vehicle_);
   return stop(measured, TrackStatus::kGearChange);
 }
 

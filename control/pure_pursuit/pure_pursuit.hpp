@@ -81,7 +81,6 @@ class PurePursuit : public Tracker {
   double pursuit(const Pose2& pose, const Point2& target) const;
   double command_angle(double wanted, double actual, double dt) const;
   double planned_angle() const;
-  double longest_steering() const;
   TrackOutput arrive(const VehicleState& measured);
   TrackOutput stand(const VehicleState& measured, double dt);
   TrackOutput drive(const VehicleState& measured, const Pose2& pose, double dt);

@@ -28,6 +28,7 @@ struct HorizonWeights {
   double turn_weight = 1.0;
   double acceleration_weight = 0.3;
   double turn_rate_weight = 0.3;
+  double yaw_acceleration_weight = 0.01;
   double terminal_ratio = 3.0;
 
   template <class V>
@@ -41,7 +42,9 @@ struct HorizonWeights {
     v("acceleration_weight", acceleration_weight, config::kPositive,
       "Of the acceleration against the reference's [s4/m2]");
     v("turn_rate_weight", turn_rate_weight, config::kPositive,
-      "Of the steering rate (yaw acceleration) against the reference's [s2/rad2]");
+      "Of an Ackermann vehicle's steering rate against the reference's [s2/rad2]");
+    v("yaw_acceleration_weight", yaw_acceleration_weight, config::kPositive,
+      "Of a differential vehicle's yaw acceleration against the reference's [s4/rad2]");
     v("terminal_ratio", terminal_ratio, config::Range{1.0, 1000.0},
       "Weights of the last state over those of the others");
   }

@@ -30,6 +30,7 @@ enum class ErrorCode : int {
   kTaskDoesNotFit = 206,
   // 4xx: control.
   kPathLost = 401,
+  kPathTooTight = 402,
   // 9xx: a broken invariant. Exit code 4.
   kInternal = 901,
 };

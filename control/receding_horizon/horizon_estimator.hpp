@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "control/estimation/estimation_log.hpp"
+#include "control/estimation/estimator.hpp"
+
+namespace headland {
+
+/// How the noise over the window is blocked: held constant over blocks of intervals (Wallace et al.
+/// 2018, 2019; seed 003's [2]-[4]).
+enum class NoiseBlocking {
+  kNone,       ///< every interval has its own
+  kUniform,    ///< blocks of equal length
+  kStructured  ///< short blocks near the present, growing into the past
+};
+
+struct HorizonEstimatorConfig {
+  double window_s = 2.0;
+  double period_s = 0.05;
+  NoiseBlocking blocking = NoiseBlocking::kStructured;
+  int blocks_count = 8;
+  int iterations_count = 2;
+  double tail_freedom_count = 3.0;
+
+  template <class V>
+  void visit(V& v) {
+    v("window_s", window_s, config::Range{0.1, 20.0}, "Length of the window [s]");
+    v("period_s", period_s, config::Range{0.005, 1.0},
+      "Between solves, and the window's interval; rounded to whole control cycles [s]");
+    v("blocking", blocking, "How the noise over the window is blocked");
+    v("blocks_count", blocks_count, config::Range{1, 1000}, "Uniform blocks in a full window");
+    v("iterations_count", iterations_count, config::Range{1, 50}, "Gauss-Newton steps a solve");
+    v("tail_freedom_count", tail_freedom_count, config::kNonNegative,
+      "Degrees of freedom of the slip's heavy-tailed (Student's t) changes; 0: Gaussian");
+  }
+};
+
+/// The receding-horizon estimator of seed 003 (III-D): over a window of the last seconds it finds
+/// the trajectory of pose, drive and slip that fits measurements, motion model and prior best:
+///   min |x_0 - x_prior|^2 + sum |y_j - h(x(t_j))|^2_R + sum |x_{b+1} - F_b(x_b, w)|^2_Q
+/// over states x_b at the borders of noise blocks, between which speed, turn and slip run as the
+/// commands say plus a constant noise w, and the pose by the motion model. Block-tridiagonal
+/// Gauss-Newton: linear in the window's length and in the number of blocks. Changes of the slip are
+/// heavy-tailed (iteratively reweighted), so that a step is taken for a step. The arrival cost is
+/// that of a Kalman filter at the window's begin, which learns of steps from the window. Bounds of
+/// the slip by an exterior penalty. Does not allocate in update().
+class HorizonEstimator : public Estimator {
+ public:
+  /// `cycle` [s]: of the updates.
+  HorizonEstimator(const Vehicle& vehicle, const EstimationConfig& model,
+                   const HorizonEstimatorConfig& config, double cycle);
+
+  void reset(const VehicleState& start, double now) override;
+  Estimate update(std::span<const Measurement> measured, const Command& last, double now) override;
+
+  /// Intervals per noise block of a full window, oldest first.
+  const std::vector<int>& blocks() const { return block_lengths_; }
+
+ private:
+  // One noise block: from grid point `first` to `last`.
+  struct Block {
+    int first = 0;
+    int last = 0;
+    Eigen::Vector3d trust = Eigen::Vector3d::Ones();  // weight of the slip's change in it
+    EstimateMatrix own;       // Hessian of the state at its begin
+    EstimateMatrix coupling;  // with the state at its end
+    EstimateVector slope;
+    EstimateVector step;
+  };
+  // Along a block: the state, and the pose's derivatives to pose and drive at the block's begin and
+  // to the drive at its end.
+  struct Chain;
+
+  int length() const { return static_cast<int>((log_.now() - log_.base()) / stride_); }
+  EstimateVector& grid(int j) { return grid_[static_cast<std::size_t>(j)]; }
+  Block& block(int b) { return blocks_[static_cast<std::size_t>(b)]; }
+  Drive<double> drive_within(const Block& block, int j, double fraction) const;
+  void restart();
+  void advance_base();
+  void lay_blocks();
+  void guess_grid();
+  void guess_answers();
+  void linearise();
+  void add_block(Block& begin, Block& end);
+  void add_measurements(Block& from, Block& to, int j, Chain& chain);
+  void add_transition(Block& begin, Block& end, const Chain& chain);
+  void add_bounds(Block& at);
+  bool solve_steps();
+  void take_steps();
+  void weigh_changes();
+
+  EstimationModel model_;
+  HorizonEstimatorConfig config_;
+  EstimationLog log_;
+  int stride_;        // cycles an interval
+  int most_;          // intervals in a full window
+  std::vector<int> block_lengths_;
+  KalmanFilter prior_;  // at the window's begin
+  Eigen::Vector3d prior_inflation_ = Eigen::Vector3d::Ones();
+  std::vector<EstimateVector> grid_;       // trajectory at the intervals' borders
+  std::vector<Eigen::Vector2d> answers_;   // of speed and turn to the commands, since the block's begin
+  std::vector<Block> blocks_;              // the last one is the window's end
+  int block_count_ = 0;                    // without that
+  int grid_length_ = 0;
+  std::span<const Measurement>::iterator next_measurement_;
+  long solved_at_ = 0;  // [cycles]
+  EstimateVector newest_ = EstimateVector::Zero();
+  EstimateVector variance_ = EstimateVector::Zero();
+};
+
+}  // namespace headland
+
+template <>
+struct headland::config::EnumNames<headland::NoiseBlocking> {
+  static constexpr std::pair<headland::NoiseBlocking, std::string_view> values[] = {
+      {headland::NoiseBlocking::kNone, "none"},
+      {headland::NoiseBlocking::kUniform, "uniform"},
+      {headland::NoiseBlocking::kStructured, "structured"}};
+};
