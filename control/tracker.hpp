@@ -9,10 +9,19 @@
 
 namespace headland {
 
+/// A stretch of a path that is to be driven slowly.
+struct SpeedZone {
+  double begin_s = 0.0;  ///< [m]
+  double end_s = 0.0;    ///< [m]
+  double speed = 0.0;    ///< [m/s] > 0
+};
+
 /// A path with the speed wanted on each of its legs.
 struct Reference {
   Path path;
   std::vector<double> leg_speed;  ///< [m/s], one per leg number of the path
+  /// Where the ground allows less (energy_zones), in the order of their begins.
+  std::vector<SpeedZone> zones{};
 };
 
 enum class TrackStatus {
