@@ -1,39 +1,40 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "core/base/random.hpp"
-#include "core/config/visit.hpp"
+#include <cstdint>
+#include <span>
+
+#include "core/model/command_delay.hpp"
 #include "core/model/drive_cost.hpp"
 #include "core/model/kinematics.hpp"
+#include "core/model/measurement.hpp"
 #include "core/world/ground.hpp"
+#include "sim/ground_slip.hpp"
+#include "sim/sensors.hpp"
 
 namespace headland {
 
-/// What a simulated vehicle's sensors get wrong.
-struct SensorConfig {
-  double position_accuracy_m = 0.0;
-  double heading_noise_deg = 0.0;
-
-  template <class V>
-  void visit(V& v) {
-    v("position_accuracy_m", position_accuracy_m, config::kNonNegative,
-      "Fixes are off by a uniform error within +- this in x and in y (seed 004) [m]");
-    v("heading_noise_deg", heading_noise_deg, config::kNonNegative,
-      "Standard deviation of the heading's white noise [deg]");
-  }
+/// What a simulated vehicle meets, and what its sensors make of it.
+struct SimulatedVehicleConfig {
+  SensorConfig sensors;
+  SlipConfig slip;
 };
 
-/// A vehicle and its battery in lock-step simulation. It draws by the same model as plans do, but
-/// at its true speed, acceleration, curvature and slope. Deterministic for a seed.
+/// A vehicle and its battery in lock-step simulation: dead times, lags and limits of the actuators,
+/// then the wheels, of which the ground lets through a part. It draws by the same model as plans
+/// do, but over ground, at its true speed, acceleration, curvature, slope and slip. Deterministic
+/// for a seed.
 class SimulatedVehicle {
  public:
+  /// `cycle` [s] > 0 is the duration of all its steps.
   SimulatedVehicle(const Vehicle& vehicle, const Pose2& start, double soc,
-                   const SensorConfig& sensors, std::uint64_t seed,
+                   const SimulatedVehicleConfig& config, std::uint64_t seed, double cycle,
                    const Ground& ground = Ground());
 
-  /// Drives `dt` [s] under a held command; `kind` says whether the implement is at work. Beyond the
-  /// terrain it goes on at the last height. What a full battery cannot take is lost.
-  void step(const Command& command, LegKind kind, double dt);
+  /// Drives a cycle under a held command, which acts after the dead times; `kind` says whether the
+  /// implement is at work. Beyond the terrain it goes on at the last height. What a full battery
+  /// cannot take is lost.
+  void step(const Command& command, LegKind kind);
   /// Draws energy [J] for anything but driving.
   void draw(double energy);
   /// Stands at a charger up to `to_soc`; returns the time it takes [s]. Nothing where it has that
@@ -41,18 +42,29 @@ class SimulatedVehicle {
   double charge(const ChargeCurve& curve, double to_soc);
 
   const VehicleState& truth() const { return state_; }
-  /// The state as sensors give it: a new fix at every call.
-  VehicleState measure();
+  const Slip& slip() const { return slip_; }     ///< of the last step
+  double yaw_rate() const { return yaw_rate_; }  ///< over ground, mean of the last step [rad/s]
+  double distance() const { return ground_slip_.distance(); }  ///< driven over ground [m]
+  /// What the sensors tell by `now` [s], which never decreases: once a tick. As Sensors::sense.
+  std::span<const Measurement> sense(double now) { return sensors_.sense(state_, yaw_rate_, now); }
+  /// The whole state with the errors of the fix alone: a new fix at every call.
+  VehicleState measure() { return sensors_.fix(state_); }
   double soc() const { return energy_j_ / vehicle_.battery.capacity_j(); }
   double drawn_j() const { return drawn_j_; }  ///< net of what was recuperated
   double height() const { return height_; }    ///< of the ground under it [m]
 
  private:
+  void draw_for(const VehicleState& before, bool working);
+
   Vehicle vehicle_;
-  SensorConfig sensors_;
+  double cycle_s_;
   Ground ground_;
-  RandomStream noise_;
+  CommandDelay delay_;
+  GroundSlip ground_slip_;
+  Sensors sensors_;
   VehicleState state_;
+  Slip slip_;
+  double yaw_rate_ = 0.0;
   double height_;
   double energy_j_;
   double drawn_j_ = 0.0;

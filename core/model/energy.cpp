@@ -12,7 +12,7 @@ constexpr double kMostSlip = 0.5;       // beyond it the vehicle is stuck
 
 }  // namespace
 
-double step_energy(const EnergyModel& model, const DriveStep& step) {
+double wheel_work(const EnergyModel& model, const DriveStep& step) {
   const double mass = model.total_mass();
   const double weight = mass * kGravity;
   const double v2 = step.speed_mps * step.speed_mps;
@@ -24,12 +24,23 @@ double step_energy(const EnergyModel& model, const DriveStep& step) {
   const double turning =
       model.turn_loss_ratio * mass * v2 * std::abs(step.curvature_1pm) * step.distance_m;
   const double draft = step.working ? model.implement_draft_n * step.distance_m : 0.0;
-  const double work = weight * step.rise_m + kinetic + rolling + air + turning + draft;
+  return weight * step.rise_m + kinetic + rolling + air + turning + draft;
+}
+
+double traction_ratio(const EnergyModel& model, const DriveStep& step) {
+  if (step.distance_m <= 0.0) return 0.0;
+  return wheel_work(model, step) / (model.total_mass() * kGravity * step.distance_m);
+}
+
+double step_energy(const EnergyModel& model, const DriveStep& step) {
+  const double work = wheel_work(model, step);
   const double load =
       (model.base_power_w + (step.working ? model.implement_power_w : 0.0)) * step.duration_s;
   if (work <= 0.0) return work * model.recuperation_efficiency_ratio + load;
+  const double weight = model.total_mass() * kGravity;
   const double traction = step.distance_m > 0.0 ? work / (weight * step.distance_m) : 0.0;
-  const double slip = std::min(kMostSlip, step.soil.slip_per_traction * traction);
+  const double slip =
+      std::min(kMostSlip, step.soil.slip_per_traction * traction + step.excess_slip_ratio);
   return work / (1.0 - slip) / model.drive_efficiency_ratio + load;
 }
 

@@ -65,13 +65,21 @@ struct DriveStep {
   double speed_before_mps = 0.0;  ///< at its beginning
   SoilResistance soil = soil_resistance(SoilClass::kFirm);
   bool working = false;  ///< implement down
+  /// Of the wheels, beyond what the soil does under the traction.
+  double excess_slip_ratio = 0.0;
 };
 
-/// Energy drawn from the battery [J] in a step; negative where more is recuperated than drawn:
+/// Work at the wheels [J] of a step, as the vehicle moves over the ground; negative: braking.
 ///   work = m g rise + (m + m_rot) (v^2 - v_before^2) / 2 + c_roll m g ds + rho/2 c_w A v^2 ds
 ///        + c_turn m v^2 |kappa| ds + draft ds
+double wheel_work(const EnergyModel& model, const DriveStep& step);
+
+/// The force of that work over the weight; zero where nothing moves.
+double traction_ratio(const EnergyModel& model, const DriveStep& step);
+
+/// Energy drawn from the battery [J] in a step; negative where more is recuperated than drawn:
 ///   drawn = work / ((1 - slip) eta_drive), or work eta_recuperation where work < 0; + loads dt
-///   slip = slip_per_traction work / (m g ds), at most 0.5
+///   slip = slip_per_traction work / (m g ds) + excess slip, at most 0.5
 /// Work is that of SUMO 1.15 (Kurczveil, Lopez, Schnieder 2014; tested side by side); slip,
 /// implement and loads beside the drive are ours. At constant speed no step is cheaper than
 /// eta_recuperation m g rise, so that drive energies plus that potential are never negative.

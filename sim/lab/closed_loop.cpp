@@ -92,8 +92,8 @@ class Driver {
         farm_(farm),
         config_(config),
         slots_(slots),
-        vehicle_(plan.vehicle, plan.start, plan.start_soc, config.sensors,
-                 config.seed + static_cast<std::uint64_t>(number), ground),
+        vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
+                 config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
         tracker_(make_tracker(plan.vehicle, config.control, config.sensors)),
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
@@ -153,15 +153,13 @@ class Driver {
   }
 
   void drive(double time) {
-    const double dt = config_.step_s;
-    const TrackOutput output = tracker_->step(vehicle_.measure(), dt);
+    const TrackOutput output = tracker_->step(vehicle_.measure(), config_.step_s);
     if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < 1e-9) {
       return arrive(time);
     }
     if (failed(output.status)) return give_up(describe(output.status), time);
     const Path& path = stage().path;
-    vehicle_.step(output.command, plan_.legs[static_cast<std::size_t>(path.at(output.s).leg)].kind,
-                  dt);
+    vehicle_.step(output.command, plan_.legs[static_cast<std::size_t>(path.at(output.s).leg)].kind);
     record(path, output, time);
     if (std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
       return give_up("the vehicle left its path", time);

@@ -23,6 +23,7 @@ struct SimulationConfig {
   double max_deviation_m = 3.0;
   double trace_period_s = 0.1;
   SensorConfig sensors;
+  SlipConfig slip;
   ControlConfig control;
 
   template <class V>
@@ -36,6 +37,7 @@ struct SimulationConfig {
     v("trace_period_s", trace_period_s, config::kNonNegative,
       "Between the lines of trace.csv and the messages of run.mcap [s]; 0: every step");
     v("sensors", sensors, "Sensor errors");
+    v("slip", slip, "Slip of the wheels on the ground");
     v("control", control, "The trackers");
   }
 };

@@ -6,6 +6,8 @@
 namespace headland {
 namespace {
 
+constexpr double kCycle = 0.02;
+
 Vehicle rover() {
   Vehicle vehicle;
   vehicle.name = "rover";
@@ -31,7 +33,7 @@ Ground ramp(double slope) {
 
 // Drives straight ahead at a speed for some steps of 20 ms.
 void drive(SimulatedVehicle& sim, double speed, int steps) {
-  for (int i = 0; i < steps; ++i) sim.step({speed, 0.0, 0.0}, LegKind::kTransit, 0.02);
+  for (int i = 0; i < steps; ++i) sim.step({speed, 0.0, 0.0}, LegKind::kTransit);
 }
 
 TEST(SimulatedVehicle, DrawsWhatPathCostPlansOnceItHasItsSpeed) {
@@ -39,7 +41,7 @@ TEST(SimulatedVehicle, DrawsWhatPathCostPlansOnceItHasItsSpeed) {
   vehicle.transit_speed_mps = 1.0;
   for (const double slope : {0.0, 0.05, -0.02, -0.2}) {
     const Ground ground = ramp(slope);
-    SimulatedVehicle sim(vehicle, {-100.0, 0.0, 0.0}, 0.5, {}, 1, ground);
+    SimulatedVehicle sim(vehicle, {-100.0, 0.0, 0.0}, 0.5, {}, 1, kCycle, ground);
     drive(sim, 1.0, 50);
     const double drawn = sim.drawn_j();
     Path path;
@@ -57,7 +59,7 @@ TEST(SimulatedVehicle, SpeedingUpCostsAndBrakingGivesPartOfItBack) {
   vehicle.acceleration_mps2 = 1.0;
   vehicle.energy.base_power_w = 0.0;
   vehicle.energy.rolling_factor_ratio = 1e-9;
-  SimulatedVehicle sim(vehicle, {}, 0.5, {}, 1);
+  SimulatedVehicle sim(vehicle, {}, 0.5, {}, 1, kCycle);
   drive(sim, 2.0, 200);
   const double kinetic = 0.5 * 200.0 * 4.0;
   EXPECT_GT(sim.drawn_j(), kinetic / 0.8);
@@ -71,8 +73,8 @@ TEST(SimulatedVehicle, CurvesCostTheTurnLoss) {
   Vehicle vehicle = rover();
   vehicle.acceleration_mps2 = 100.0;
   const auto drawn_at = [&vehicle](double yaw_rate) {
-    SimulatedVehicle sim(vehicle, {}, 1.0, {}, 1);
-    for (int i = 0; i < 500; ++i) sim.step({1.0, 0.0, yaw_rate}, LegKind::kTurn, 0.02);
+    SimulatedVehicle sim(vehicle, {}, 1.0, {}, 1, kCycle);
+    for (int i = 0; i < 500; ++i) sim.step({1.0, 0.0, yaw_rate}, LegKind::kTurn);
     return sim.drawn_j();
   };
   EXPECT_NEAR(drawn_at(0.5), drawn_at(0.0), 1e-6);
@@ -86,15 +88,15 @@ TEST(SimulatedVehicle, SoilsAreFelt) {
   Farm farm;
   farm.soils.push_back(
       {"dune", SoilClass::kSand, {{{-9.0, -9.0}, {90.0, -9.0}, {90.0, 9.0}, {-9.0, 9.0}}, {}}});
-  SimulatedVehicle firm(rover(), {}, 1.0, {}, 1);
-  SimulatedVehicle sand(rover(), {}, 1.0, {}, 1, Ground(farm, std::nullopt));
+  SimulatedVehicle firm(rover(), {}, 1.0, {}, 1, kCycle);
+  SimulatedVehicle sand(rover(), {}, 1.0, {}, 1, kCycle, Ground(farm, std::nullopt));
   drive(firm, 1.0, 500);
   drive(sand, 1.0, 500);
   EXPECT_GT(sand.drawn_j(), 2.0 * firm.drawn_j());
 }
 
 TEST(SimulatedVehicle, AFullBatteryTakesNoMore) {
-  SimulatedVehicle sim(rover(), {-100.0, 0.0, 0.0}, 1.0, {}, 1, ramp(-0.3));
+  SimulatedVehicle sim(rover(), {-100.0, 0.0, 0.0}, 1.0, {}, 1, kCycle, ramp(-0.3));
   drive(sim, 1.0, 2000);
   EXPECT_EQ(sim.soc(), 1.0);
   EXPECT_GE(sim.drawn_j(), 0.0);
@@ -102,14 +104,14 @@ TEST(SimulatedVehicle, AFullBatteryTakesNoMore) {
 }
 
 TEST(SimulatedVehicle, BeyondTheTerrainItGoesOnAtTheLastHeight) {
-  SimulatedVehicle sim(rover(), {190.0, 0.0, 0.0}, 0.5, {}, 1, ramp(0.1));
+  SimulatedVehicle sim(rover(), {190.0, 0.0, 0.0}, 0.5, {}, 1, kCycle, ramp(0.1));
   drive(sim, 1.0, 2000);
   EXPECT_GT(sim.truth().pose.x, 220.0);
   EXPECT_NEAR(sim.height(), 20.0, 0.01);
 }
 
 TEST(SimulatedVehicle, ChargesByTheCurve) {
-  SimulatedVehicle sim(rover(), {}, 0.5, {}, 1);
+  SimulatedVehicle sim(rover(), {}, 0.5, {}, 1, kCycle);
   EXPECT_NEAR(sim.charge(ChargeCurve(1800.0), 0.75), 500.0, 1e-9);  // 250 Wh at 1.8 kW
   EXPECT_NEAR(sim.soc(), 0.75, 1e-15);
   const ChargeCurve slow = ChargeCurve::cc_cv(1800.0, 0.8, 0.1);
@@ -125,7 +127,9 @@ TEST(SimulatedVehicle, ChargesByTheCurve) {
 }
 
 TEST(SimulatedVehicle, FixesAreOffByAtMostTheAccuracy) {
-  SimulatedVehicle sim(rover(), {3.0, 4.0, 0.0}, 1.0, {0.05, 0.0}, 1);
+  SimulatedVehicleConfig fixes;
+  fixes.sensors.position_accuracy_m = 0.05;
+  SimulatedVehicle sim(rover(), {3.0, 4.0, 0.0}, 1.0, fixes, 1, kCycle);
   double worst = 0.0;
   double sum = 0.0;
   for (int i = 0; i < 10000; ++i) {
@@ -140,7 +144,7 @@ TEST(SimulatedVehicle, FixesAreOffByAtMostTheAccuracy) {
 }
 
 TEST(SimulatedVehicle, WithoutErrorsTheFixIsTheTruth) {
-  SimulatedVehicle sim(rover(), {3.0, 4.0, 1.0}, 1.0, {}, 1);
+  SimulatedVehicle sim(rover(), {3.0, 4.0, 1.0}, 1.0, {}, 1, kCycle);
   EXPECT_EQ(sim.measure().pose.x, sim.truth().pose.x);
   EXPECT_EQ(sim.measure().pose.yaw, sim.truth().pose.yaw);
 }
