@@ -14,9 +14,9 @@ struct EstimationConfig {
   double speed_walk_mps = 0.1;
   double turn_walk_deg = 0.5;
   double yaw_rate_walk_radps = 0.05;
-  double loss_walk_ratio = 0.03;
-  double side_walk_deg = 0.8;
-  double offset_walk_deg = 0.5;
+  double loss_walk_ratio = 0.005;
+  double side_walk_deg = 0.15;
+  double offset_walk_deg = 0.08;
   double first_loss_ratio = 0.1;
   double first_side_deg = 3.0;
   double first_offset_deg = 2.0;
@@ -51,7 +51,8 @@ struct EstimationConfig {
     v("first_offset_deg", first_offset_deg, config::kPositive,
       "Of the steering offset at the start [deg]");
     v("first_position_m", first_position_m, config::kPositive, "Of the position at the start [m]");
-    v("first_heading_deg", first_heading_deg, config::kPositive, "Of the heading at the start [deg]");
+    v("first_heading_deg", first_heading_deg, config::kPositive,
+      "Of the heading at the start [deg]");
     v("most_loss_ratio", most_loss_ratio, config::Range{0.0, 0.9},
       "Bound of the longitudinal slip, both ways");
     v("most_side_deg", most_side_deg, config::Range{0.0, 60.0},

@@ -25,11 +25,11 @@ class EstimationLog {
   /// Forgets what is older than cycle `base`.
   void forget_before(long base);
 
-  double cycle() const { return cycle_; }       ///< [s]
-  long now() const { return now_; }             ///< [cycles]
-  long base() const { return base_; }           ///< [cycles]
+  double cycle() const { return cycle_; }  ///< [s]
+  long now() const { return now_; }        ///< [cycles]
+  long base() const { return base_; }      ///< [cycles]
   double time(long cycles) const { return start_ + static_cast<double>(cycles) * cycle_; }  ///< [s]
-  const Command& acting(long cycle) const;      ///< in the cycle that begins there
+  const Command& acting(long cycle) const;  ///< in the cycle that begins there
   /// By time, oldest first.
   std::span<const Measurement> measurements() const {
     return {measurements_.data() + first_, measurements_.size() - first_};

@@ -56,8 +56,8 @@ EstimationModel::EstimationModel(const Vehicle& vehicle, const EstimationConfig&
       squared(deg_to_rad(config.heading_drift_deg)), 0.0, 0.0, squared(config.loss_walk_ratio),
       squared(deg_to_rad(config.side_walk_deg)), squared(deg_to_rad(config.offset_walk_deg));
   per_second_(kDriveAt + kSpeed) = squared(config.speed_walk_mps);
-  per_second_(kDriveAt + kTurn) = squared(motion_.ackermann() ? deg_to_rad(config.turn_walk_deg)
-                                                              : config.yaw_rate_walk_radps);
+  per_second_(kDriveAt + kTurn) =
+      squared(motion_.ackermann() ? deg_to_rad(config.turn_walk_deg) : config.yaw_rate_walk_radps);
 }
 
 EstimateVector EstimationModel::vector_of(const VehicleState& state, const Slip& slip) const {
@@ -86,21 +86,27 @@ EstimateMatrix EstimationModel::first_covariance() const {
   return variance.asDiagonal();
 }
 
-Eigen::Vector2d EstimationModel::answer(const EstimateVector& state, const Command& acting,
-                                        double dt) const {
-  const double speed = state(kDriveAt + kSpeed);
-  const double turn = state(kDriveAt + kTurn);
-  const double turned = motion_.ackermann()
-                            ? step_steering(vehicle_, turn, acting.steering, dt)
-                            : step_yaw_rate(vehicle_, turn, acting.yaw_rate, dt);
-  return {step_speed(vehicle_, speed, acting.speed, dt) - speed, turned - turn};
+Eigen::Vector2d EstimationModel::actuate(const Eigen::Vector2d& actual, const Command& acting,
+                                         double dt) const {
+  return {step_speed(vehicle_, actual(0), acting.speed, dt),
+          motion_.ackermann() ? step_steering(vehicle_, actual(1), acting.steering, dt)
+                              : step_yaw_rate(vehicle_, actual(1), acting.yaw_rate, dt)};
+}
+
+ActuatorAnswer EstimationModel::answer(const Eigen::Vector2d& actual, const Command& acting,
+                                       double dt) const {
+  // The actuators' laws are linear between their limits: any small step gives the slope.
+  constexpr double kStep = 1e-6;
+  const Eigen::Vector2d after = actuate(actual, acting, dt);
+  const Eigen::Vector2d beside = actuate(actual.array() + kStep, acting, dt);
+  return {after - actual, ((beside - after) / kStep).cwiseMax(0.0).cwiseMin(1.0)};
 }
 
 EstimateVector EstimationModel::coast(const EstimateVector& state, const Command& acting,
                                       double dt) const {
   const Drive<double> begin = state.tail<kDriveSize>();
   Drive<double> end = begin;
-  end.head<2>() += answer(state, acting, dt);
+  end.head<2>() = actuate(begin.head<2>(), acting, dt);
   const Eigen::Vector3d moved = motion_.displacement<double>(begin, end, dt);
   const Pose2 pose = Pose2{state(0), state(1), state(2)} * Pose2{moved(0), moved(1), moved(2)};
   EstimateVector after;
@@ -124,7 +130,10 @@ void KalmanFilter::reset(const EstimateVector& state, const EstimateMatrix& cova
 void KalmanFilter::predict(const Command& acting, double dt, const Eigen::Vector3d& inflation) {
   const Drive<double> begin = state_.tail<kDriveSize>();
   Drive<double> end = begin;
-  end.head<2>() += model_->answer(state_, acting, dt);
+  const ActuatorAnswer answer = model_->answer(begin.head<2>(), acting, dt);
+  end.head<2>() += answer.change;
+  Drive<double> keep = Drive<double>::Ones();
+  keep.head<2>() = answer.keep;
   EstimateVector noise = model_->noise(state_, dt);
   noise.tail<3>() = noise.tail<3>().cwiseProduct(inflation);
   MotionModel::Jacobian<double> by_begin;
@@ -139,7 +148,8 @@ void KalmanFilter::predict(const Command& acting, double dt, const Eigen::Vector
   EstimateMatrix transition = EstimateMatrix::Identity();
   transition(0, 2) = -step(1);
   transition(1, 2) = step(0);
-  transition.topRightCorner<3, kDriveSize>() = turned * (by_begin + by_end);
+  transition.topRightCorner<3, kDriveSize>() = turned * (by_begin + by_end * keep.asDiagonal());
+  transition.diagonal().tail<kDriveSize>() = keep;
   state_.head<3>() += step;
   state_.tail<kDriveSize>() = end;
   covariance_ = (transition * covariance_ * transition.transpose()).eval();

@@ -16,12 +16,19 @@ using EstimateMatrix = Eigen::Matrix<double, 8, 8>;
 
 /// What measurements of one kind say about the state: expected value and its derivatives.
 struct MeasurementModel {
-  int size = 1;                      ///< numbers measured
-  Eigen::Vector2d residual;          ///< measured less expected; of a heading, wrapped
+  int size = 1;              ///< numbers measured
+  Eigen::Vector2d residual;  ///< measured less expected; of a heading, wrapped
   Eigen::Matrix<double, 2, 8> by_state;
 };
 MeasurementModel model_measurement(const MotionModel& motion, const EstimateVector& state,
                                    const Measurement& measurement);
+
+/// How speed and turn answer to a command: their change, and the share of what they were that is
+/// kept (1: the actuator moves at its limit; 0: it is where the command wants it).
+struct ActuatorAnswer {
+  Eigen::Vector2d change = Eigen::Vector2d::Zero();
+  Eigen::Vector2d keep = Eigen::Vector2d::Ones();
+};
 
 /// The motion model, the noise and the bounds that estimators of one vehicle share.
 class EstimationModel {
@@ -34,8 +41,8 @@ class EstimationModel {
   EstimateVector vector_of(const VehicleState& state, const Slip& slip) const;
   VehicleEstimate estimate_of(const EstimateVector& state) const;
   EstimateMatrix first_covariance() const;
-  /// How speed and turn change under a command that acts for `dt` [s].
-  Eigen::Vector2d answer(const EstimateVector& state, const Command& acting, double dt) const;
+  /// To a command that acts for `dt` [s]; `actual`: speed and turn before.
+  ActuatorAnswer answer(const Eigen::Vector2d& actual, const Command& acting, double dt) const;
   /// The state after `dt` [s] under a command that acts.
   EstimateVector coast(const EstimateVector& state, const Command& acting, double dt) const;
   /// Variances that `dt` [s] at the speed of `state` add, the pose's first.
@@ -45,6 +52,8 @@ class EstimationModel {
   const Eigen::Vector3d& slip_bounds() const { return slip_bounds_; }
 
  private:
+  Eigen::Vector2d actuate(const Eigen::Vector2d& actual, const Command& acting, double dt) const;
+
   Vehicle vehicle_;
   EstimationConfig config_;
   MotionModel motion_;

@@ -12,10 +12,10 @@
 namespace headland {
 namespace {
 
-constexpr double kSameTime = 1e-9;       // [s]
-constexpr double kLeastVariance = 1e-10; // of the pose over a block that stands [m2, rad2]
-constexpr double kLeastSlip = 1e-12;     // and of the slip
-constexpr double kBoundWeight = 1e8;     // of a slip beyond its bound, squared
+constexpr double kSameTime = 1e-9;        // [s]
+constexpr double kLeastVariance = 1e-10;  // of the pose over a block that stands [m2, rad2]
+constexpr double kLeastSlip = 1e-12;      // and of the slip
+constexpr double kBoundWeight = 1e8;      // of a slip beyond its bound, squared
 
 // Lengths of the blocks of a full window, oldest first.
 std::vector<int> block_lengths(const HorizonEstimatorConfig& config, int intervals) {
@@ -43,14 +43,13 @@ struct HorizonEstimator::Chain {
   Eigen::Matrix3d by_pose = Eigen::Matrix3d::Identity();
   MotionModel::Jacobian<double> by_begin = MotionModel::Jacobian<double>::Zero();
   MotionModel::Jacobian<double> by_end = MotionModel::Jacobian<double>::Zero();
-  double share = 0.0;  // of the block that is behind
+  Within at;
 
-  // Moves on for `dt` [s] until the drive is `drive` and the share `until`.
-  void move(const MotionModel& motion, const Drive<double>& drive, double until, double dt) {
+  // Moves on for `dt` [s] until the drive is that of `next`.
+  void move(const MotionModel& motion, const Within& next, double dt) {
     MotionModel::Jacobian<double> from;
     MotionModel::Jacobian<double> to;
-    const Drive<double> now = state.tail<kDriveSize>();
-    const Eigen::Vector3d moved = motion.displacement<double>(now, drive, dt, from, to);
+    const Eigen::Vector3d moved = motion.displacement<double>(at.drive, next.drive, dt, from, to);
     const double c = std::cos(state(2));
     const double s = std::sin(state(2));
     Eigen::Matrix3d turned;
@@ -63,11 +62,11 @@ struct HorizonEstimator::Chain {
     swing(by_pose);
     swing(by_begin);
     swing(by_end);
-    by_begin += turned * ((1.0 - share) * from + (1.0 - until) * to);
-    by_end += turned * (share * from + until * to);
+    by_begin += turned * (from * at.by_begin.asDiagonal() + to * next.by_begin.asDiagonal());
+    by_end += turned * (at.by_end * from + next.by_end * to);
     state.head<3>() += step;
-    state.tail<kDriveSize>() = drive;
-    share = until;
+    state.tail<kDriveSize>() = next.drive;
+    at = next;
   }
 };
 
@@ -81,7 +80,7 @@ HorizonEstimator::HorizonEstimator(const Vehicle& vehicle, const EstimationConfi
       block_lengths_(block_lengths(config, most_)),
       prior_(model_),
       grid_(static_cast<std::size_t>(most_) + 1, EstimateVector::Zero()),
-      answers_(static_cast<std::size_t>(most_) + 1, Eigen::Vector2d::Zero()),
+      answers_(static_cast<std::size_t>(most_) + 1),
       blocks_(block_lengths_.size() + 1) {}
 
 void HorizonEstimator::reset(const VehicleState& start, double now) {
@@ -146,34 +145,39 @@ void HorizonEstimator::guess_grid() {
   grid_length_ = length();
 }
 
-// How speed and turn answer to the commands along the present trajectory, summed up within blocks.
+// How speed and turn answer to the commands from each block's begin on.
 void HorizonEstimator::guess_answers() {
   for (int b = 0; b < block_count_; ++b) {
-    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    const Eigen::Vector2d before = grid(block(b).first).segment<2>(3);
+    ActuatorAnswer sum;
     for (int j = block(b).first; j < block(b).last; ++j) {
-      EstimateVector state = grid(j);
-      const Eigen::Vector2d before = state.segment<2>(3);
       for (int i = 0; i < stride_; ++i) {
         const Command& acting = log_.acting(log_.base() + j * stride_ + i);
-        state.segment<2>(3) += model_.answer(state, acting, log_.cycle());
+        const ActuatorAnswer one = model_.answer(before + sum.change, acting, log_.cycle());
+        sum.change += one.change;
+        sum.keep = sum.keep.cwiseProduct(one.keep);
       }
-      sum += state.segment<2>(3) - before;
       answers_[static_cast<std::size_t>(j) + 1] = sum;  // a block's end keeps its own sum
     }
   }
 }
 
-// The drive at a fraction of interval j: the commands' answer, and the noise's even share.
-Drive<double> HorizonEstimator::drive_within(const Block& b, int j, double fraction) const {
+// What the commands make of the drive at the block's begin, and the noise's even share.
+HorizonEstimator::Within HorizonEstimator::within(const Block& b, int j, double fraction) const {
   const auto i = static_cast<std::size_t>(j);
   const auto at = [this](int k) { return grid_[static_cast<std::size_t>(k)].tail<kDriveSize>(); };
-  const Eigen::Vector2d begin =
-      j == b.first ? Eigen::Vector2d(Eigen::Vector2d::Zero()) : answers_[i];
-  Drive<double> answered = Drive<double>::Zero();
-  answered.head<2>() = begin + fraction * (answers_[i + 1] - begin);
+  const ActuatorAnswer begin = j == b.first ? ActuatorAnswer{} : answers_[i];
+  const ActuatorAnswer& end = answers_[static_cast<std::size_t>(b.last)];
+  Within result;
+  result.by_end = (j - b.first + fraction) / (b.last - b.first);
   Drive<double> noise = at(b.last) - at(b.first);
-  noise.head<2>() -= answers_[static_cast<std::size_t>(b.last)];
-  return at(b.first) + answered + (j - b.first + fraction) / (b.last - b.first) * noise;
+  noise.head<2>() -= end.change;
+  result.drive = at(b.first) + result.by_end * noise;
+  result.drive.head<2>() += begin.change + fraction * (answers_[i + 1].change - begin.change);
+  result.by_begin.setConstant(1.0 - result.by_end);
+  result.by_begin.head<2>() =
+      begin.keep + fraction * (answers_[i + 1].keep - begin.keep) - result.by_end * end.keep;
+  return result;
 }
 
 void HorizonEstimator::linearise() {
@@ -195,6 +199,7 @@ void HorizonEstimator::linearise() {
 void HorizonEstimator::add_block(Block& begin, Block& end) {
   Chain chain;
   chain.state = grid(begin.first);
+  chain.at = within(begin, begin.first, 0.0);
   for (int j = begin.first; j < begin.last; ++j) add_measurements(begin, end, j, chain);
   add_transition(begin, end, chain);
 }
@@ -203,13 +208,12 @@ void HorizonEstimator::add_block(Block& begin, Block& end) {
 void HorizonEstimator::add_measurements(Block& from, Block& to, int j, Chain& chain) {
   const double interval = stride_ * log_.cycle();
   const double time = log_.time(log_.base() + static_cast<long>(j) * stride_);
-  const double count = from.last - from.first;
+  double at = 0.0;  // fraction of the interval
   const auto move_to = [&](double fraction) {
-    const double until = (j - from.first + fraction) / count;
-    const double dt = (until - chain.share) * count * interval;
-    if (dt > kSameTime) {
-      chain.move(model_.motion(), drive_within(from, j, fraction), until, dt);
-    }
+    const double dt = (fraction - at) * interval;
+    if (dt <= kSameTime) return;
+    chain.move(model_.motion(), within(from, j, fraction), dt);
+    at = fraction;
   };
   const auto last = log_.measurements().end();
   for (; next_measurement_ != last && next_measurement_->time <= time + interval + kSameTime;
@@ -223,8 +227,8 @@ void HorizonEstimator::add_measurements(Block& from, Block& to, int j, Chain& ch
       const Eigen::Matrix<double, 1, kDriveSize> drive = seen.by_state.row(i).tail<kDriveSize>();
       EstimateVector by_from;
       by_from << (pose * chain.by_pose).transpose(),
-          (pose * chain.by_begin + (1.0 - chain.share) * drive).transpose();
-      const Drive<double> by_to = (pose * chain.by_end + chain.share * drive).transpose();
+          (pose * chain.by_begin + drive * chain.at.by_begin.asDiagonal()).transpose();
+      const Drive<double> by_to = (pose * chain.by_end + chain.at.by_end * drive).transpose();
       from.own += weight * by_from * by_from.transpose();
       from.coupling.rightCols<kDriveSize>() += weight * by_from * by_to.transpose();
       to.own.bottomRightCorner<kDriveSize, kDriveSize>() += weight * by_to * by_to.transpose();
@@ -247,13 +251,14 @@ void HorizonEstimator::add_transition(Block& begin, Block& end, const Chain& cha
   off.head<3>() = grid(begin.last).head<3>() - chain.state.head<3>();
   off.tail<kDriveSize>() =
       grid(begin.last).tail<kDriveSize>() - grid(begin.first).tail<kDriveSize>();
-  off.segment<2>(3) -= answers_[static_cast<std::size_t>(begin.last)];
+  const ActuatorAnswer& answer = answers_[static_cast<std::size_t>(begin.last)];
+  off.segment<2>(3) -= answer.change;
   off(2) = wrap_angle(off(2));
   EstimateMatrix by_begin = EstimateMatrix::Zero();
   by_begin.topLeftCorner<3, 3>() = -chain.by_pose;
   by_begin.topRightCorner<3, kDriveSize>() = -chain.by_begin;
-  by_begin.bottomRightCorner<kDriveSize, kDriveSize>() -=
-      Eigen::Matrix<double, kDriveSize, kDriveSize>::Identity();
+  by_begin.diagonal().segment<2>(3) = -answer.keep;
+  by_begin.diagonal().tail<3>().setConstant(-1.0);
   EstimateMatrix by_end = EstimateMatrix::Identity();
   by_end.topRightCorner<3, kDriveSize>() = -chain.by_end;
   const EstimateMatrix weighted = weight.asDiagonal() * by_end;
@@ -268,7 +273,8 @@ void HorizonEstimator::add_transition(Block& begin, Block& end, const Chain& cha
 void HorizonEstimator::add_bounds(Block& at) {
   for (int i = 0; i < 3; ++i) {
     const double slip = grid(at.first)(5 + i);
-    const double beyond = slip - std::clamp(slip, -model_.slip_bounds()(i), model_.slip_bounds()(i));
+    const double beyond =
+        slip - std::clamp(slip, -model_.slip_bounds()(i), model_.slip_bounds()(i));
     if (beyond == 0.0) continue;
     at.own(5 + i, 5 + i) += kBoundWeight;
     at.slope(5 + i) += kBoundWeight * beyond;
@@ -307,7 +313,7 @@ void HorizonEstimator::take_steps() {
     Pose2 pose{grid(block(b).first)(0), grid(block(b).first)(1), grid(block(b).first)(2)};
     Drive<double> drive = grid(block(b).first).tail<kDriveSize>();
     for (int j = block(b).first; j + 1 < block(b).last; ++j) {
-      const Drive<double> next = drive_within(block(b), j, 1.0);
+      const Drive<double> next = within(block(b), j, 1.0).drive;
       const Eigen::Vector3d moved = model_.motion().displacement<double>(drive, next, interval);
       pose = pose * Pose2{moved(0), moved(1), moved(2)};
       grid(j + 1) << pose.x, pose.y, pose.yaw, next;
@@ -331,6 +337,17 @@ void HorizonEstimator::weigh_changes() {
   }
 }
 
+// Weights near zero at first where no change was known yet: from there, iterating finds a step that
+// the data show; from a weight of one it would hold on to no change (graduated non-convexity).
+void HorizonEstimator::doubt_the_newest() {
+  if (config_.tail_freedom_count <= 0.0) return;
+  const double fresh = config_.fresh_s / (stride_ * log_.cycle());
+  for (int b = 0; b < block_count_; ++b) {
+    if (length() - block(b).first > fresh + 0.5) continue;
+    block(b).trust = block(b).trust.cwiseMin(config_.fresh_weight);
+  }
+}
+
 Estimate HorizonEstimator::update(std::span<const Measurement> measured, const Command& last,
                                   double now) {
   log_.take(measured, last, now);
@@ -340,6 +357,7 @@ Estimate HorizonEstimator::update(std::span<const Measurement> measured, const C
     guess_grid();
     lay_blocks();
     weigh_changes();
+    doubt_the_newest();
     for (int i = 0; good && i < config_.iterations_count; ++i) {
       guess_answers();
       linearise();

@@ -23,8 +23,10 @@ struct HorizonEstimatorConfig {
   double period_s = 0.05;
   NoiseBlocking blocking = NoiseBlocking::kStructured;
   int blocks_count = 8;
-  int iterations_count = 2;
-  double tail_freedom_count = 3.0;
+  int iterations_count = 5;
+  double tail_freedom_count = 1.0;
+  double fresh_s = 0.35;
+  double fresh_weight = 2e-3;
 
   template <class V>
   void visit(V& v) {
@@ -36,6 +38,9 @@ struct HorizonEstimatorConfig {
     v("iterations_count", iterations_count, config::Range{1, 50}, "Gauss-Newton steps a solve");
     v("tail_freedom_count", tail_freedom_count, config::kNonNegative,
       "Degrees of freedom of the slip's heavy-tailed (Student's t) changes; 0: Gaussian");
+    v("fresh_s", fresh_s, config::kNonNegative,
+      "How far back each solve first takes the slip's changes as free, to find steps [s]");
+    v("fresh_weight", fresh_weight, config::Range{1e-9, 1.0}, "The weight that frees them");
   }
 };
 
@@ -66,8 +71,8 @@ class HorizonEstimator : public Estimator {
     int first = 0;
     int last = 0;
     Eigen::Vector3d trust = Eigen::Vector3d::Ones();  // weight of the slip's change in it
-    EstimateMatrix own;       // Hessian of the state at its begin
-    EstimateMatrix coupling;  // with the state at its end
+    EstimateMatrix own;                               // Hessian of the state at its begin
+    EstimateMatrix coupling;                          // with the state at its end
     EstimateVector slope;
     EstimateVector step;
   };
@@ -78,7 +83,14 @@ class HorizonEstimator : public Estimator {
   int length() const { return static_cast<int>((log_.now() - log_.base()) / stride_); }
   EstimateVector& grid(int j) { return grid_[static_cast<std::size_t>(j)]; }
   Block& block(int b) { return blocks_[static_cast<std::size_t>(b)]; }
-  Drive<double> drive_within(const Block& block, int j, double fraction) const;
+  // The drive at a fraction of interval j, and its derivative (diagonal) to that at the block's
+  // begin; that to the drive at its end is the share of the block that is behind.
+  struct Within {
+    Drive<double> drive;
+    Drive<double> by_begin;
+    double by_end = 0.0;
+  };
+  Within within(const Block& block, int j, double fraction) const;
   void restart();
   void advance_base();
   void lay_blocks();
@@ -92,19 +104,20 @@ class HorizonEstimator : public Estimator {
   bool solve_steps();
   void take_steps();
   void weigh_changes();
+  void doubt_the_newest();
 
   EstimationModel model_;
   HorizonEstimatorConfig config_;
   EstimationLog log_;
-  int stride_;        // cycles an interval
-  int most_;          // intervals in a full window
+  int stride_;  // cycles an interval
+  int most_;    // intervals in a full window
   std::vector<int> block_lengths_;
   KalmanFilter prior_;  // at the window's begin
   Eigen::Vector3d prior_inflation_ = Eigen::Vector3d::Ones();
-  std::vector<EstimateVector> grid_;       // trajectory at the intervals' borders
-  std::vector<Eigen::Vector2d> answers_;   // of speed and turn to the commands, since the block's begin
-  std::vector<Block> blocks_;              // the last one is the window's end
-  int block_count_ = 0;                    // without that
+  std::vector<EstimateVector> grid_;     // trajectory at the intervals' borders
+  std::vector<ActuatorAnswer> answers_;  // to the commands, from the block's begin to here
+  std::vector<Block> blocks_;            // the last one is the window's end
+  int block_count_ = 0;                  // without that
   int grid_length_ = 0;
   std::span<const Measurement>::iterator next_measurement_;
   long solved_at_ = 0;  // [cycles]

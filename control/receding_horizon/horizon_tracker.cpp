@@ -13,13 +13,13 @@
 namespace headland {
 namespace {
 
-constexpr double kStill = 1e-3;         // slower counts as standing [m/s]
-constexpr double kTangentFrom = 0.05;   // of a segment's end, where its tangent measures [m]
-constexpr double kBeforeEnd = 1e-9;     // Path::at() at a segment's end is already the next one
-constexpr double kPastCusp = 2e-6;      // [m]
-constexpr double kSpeedRoom = 1.1;      // of the reference's speed that a plan may use
-constexpr double kLeastSpeedRoom = 0.2; // and at least [m/s]
-constexpr int kFirstSolves = 5;         // without a plan to start from
+constexpr double kStill = 1e-3;          // slower counts as standing [m/s]
+constexpr double kTangentFrom = 0.05;    // of a segment's end, where its tangent measures [m]
+constexpr double kBeforeEnd = 1e-9;      // Path::at() at a segment's end is already the next one
+constexpr double kPastCusp = 2e-6;       // [m]
+constexpr double kSpeedRoom = 1.1;       // of the reference's speed that a plan may use
+constexpr double kLeastSpeedRoom = 0.2;  // and at least [m/s]
+constexpr int kFirstSolves = 5;          // without a plan to start from
 
 bool is_finite(const VehicleState& state) {
   return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
@@ -182,9 +182,9 @@ TrackOutput HorizonTracker::stand(const VehicleState& then) {
   if (std::abs(then.speed) > kStill) return stop(status);
   gear_left_ -= cycle_;
   steering_left_ -= cycle_;
-  const double angle = ackermann() ? through_lag(standing_angle(), then.steering,
-                                                 vehicle_.steering_lag_s, cycle_)
-                                   : 0.0;
+  const double angle =
+      ackermann() ? through_lag(standing_angle(), then.steering, vehicle_.steering_lag_s, cycle_)
+                  : 0.0;
   const double limit = vehicle_.max_steering_rad();
   return give({0.0, std::clamp(angle, -limit, limit), 0.0}, status);
 }
@@ -261,8 +261,8 @@ bool HorizonTracker::improve_plan(double dt) {
     const double turns = std::round((problem_.start(kYaw) - plan_.states[0](kYaw)) / (2.0 * kPi));
     for (HorizonState& state : plan_.states) state(kYaw) += 2.0 * kPi * turns;
   }
-  const Deadline deadline = config_.deadline_s > 0.0 ? Deadline::in(clock_, config_.deadline_s)
-                                                     : Deadline{};
+  const Deadline deadline =
+      config_.deadline_s > 0.0 ? Deadline::in(clock_, config_.deadline_s) : Deadline{};
   SolveResult result;
   for (int i = 0; i < (fresh ? kFirstSolves : 1); ++i) {
     result = solver_->solve(problem_, plan_, deadline);

@@ -82,12 +82,12 @@ struct HorizonCounts {
 };
 
 /// The receding-horizon motion controller of seed 003 (III-D): every cycle it finds the controls of
-/// the coming seconds that keep the vehicle, with the slip that is estimated, nearest to a reference
-/// parametrised in time, and gives the first of them. The reference runs along the path by the speed
-/// profile, stands at changes of gear, and has the heading and steering that the slip asks for.
-/// Ackermann and differential vehicles, both gears, turning on the spot. Dead times are bridged by
-/// predicting with the commands that are on their way. Deterministic without a clock. A step does
-/// not allocate with the real-time iteration, and never throws.
+/// the coming seconds that keep the vehicle, with the slip that is estimated, nearest to a
+/// reference parametrised in time, and gives the first of them. The reference runs along the path
+/// by the speed profile, stands at changes of gear, and has the heading and steering that the slip
+/// asks for. Ackermann and differential vehicles, both gears, turning on the spot. Dead times are
+/// bridged by predicting with the commands that are on their way. Deterministic without a clock. A
+/// step does not allocate with the real-time iteration, and never throws.
 class HorizonTracker : public Tracker {
  public:
   /// `cycle` [s] is the time between steps. Without a `clock` there are no deadlines.

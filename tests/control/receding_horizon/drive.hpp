@@ -55,9 +55,9 @@ inline HorizonDrive drive(const Vehicle& vehicle, Tracker& tracker, const Refere
     s = out.s;
     const PathSample at = reference.path.at(std::max(0.0, s - 1e-6));
     const PathSegment& segment = reference.path.segments()[static_cast<std::size_t>(at.segment)];
-    const Projection near = reference.path.project(state.pose.position(),
-                                                   std::max(segment.begin_s, s - 1.0),
-                                                   std::min(segment.end_s, s + 1.0));
+    const Projection near =
+        reference.path.project(state.pose.position(), std::max(segment.begin_s, s - 1.0),
+                               std::min(segment.end_s, s + 1.0));
     if (state.speed * sign(at.gear) < -1e-3) ++result.against_gear;
     if (s < world.ignore_before) continue;
     result.errors.push_back(near.lateral_error);
@@ -83,7 +83,8 @@ inline Reference u_turn(double radius, double speed, double straight = 15.0) {
 
 /// Straight, fishtail (quarter forwards, straight in reverse, quarter forwards), straight back,
 /// `apart` [m] to the left.
-inline Reference fishtail_course(double radius, double apart, double speed, double straight = 10.0) {
+inline Reference fishtail_course(double radius, double apart, double speed,
+                                 double straight = 10.0) {
   Reference reference;
   Path& path = reference.path;
   path.append({{0.0, 0.0, 0.0}, 0.0, straight, Gear::kForward, 0});
