@@ -18,6 +18,8 @@ constexpr double kProgressPeriod = 1.0;  // simulated [s]
 constexpr double kWindow = 3.0;
 // Nearer to a cusp than this, the vehicle is on it [m].
 constexpr double kOnCusp = 1e-6;
+// Slower counts as standing [m/s]: a drive with a lag never quite stands.
+constexpr double kStill = 1e-3;
 
 // Who charges where, and who waits: first come, first served.
 class ChargerSlots {
@@ -94,11 +96,13 @@ class Driver {
         slots_(slots),
         vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
                  config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
-        tracker_(make_tracker(plan.vehicle, config.control, config.sensors)),
+        tracker_(make_tracker(plan.vehicle, config.control, config.sensors, config.step_s)),
+        estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
     for (const PlanStage& stage : plan.stages) total_length_ += stage.path.length();
     for (const PlanLeg& leg : plan.legs) leg_speed_.push_back(leg_speed(plan.vehicle, leg.kind));
+    if (estimator_ != nullptr) estimator_->reset(vehicle_.truth(), 0.0);
     begin_stage(0.0);
   }
 
@@ -109,6 +113,7 @@ class Driver {
 
   // The tick that ends at `time` [s].
   void step(double time) {
+    if (state_ != State::kDone) observe(time - config_.step_s);
     switch (state_) {
       case State::kDriving:
         drive(time);
@@ -152,9 +157,19 @@ class Driver {
     state_ = State::kDriving;
   }
 
+  // What the vehicle knows of itself at `time` [s], at a stand too.
+  void observe(double time) {
+    if (estimator_ == nullptr) {
+      if (state_ == State::kDriving) known_ = vehicle_.measure();
+      return;
+    }
+    known_ = estimator_->update(vehicle_.sense(time), told_, time).vehicle;
+  }
+
   void drive(double time) {
-    const TrackOutput output = tracker_->step(vehicle_.measure(), config_.step_s);
-    if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < 1e-9) {
+    const TrackOutput output = tracker_->step(known_, config_.step_s);
+    told_ = output.command;
+    if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
       return arrive(time);
     }
     if (failed(output.status)) return give_up(describe(output.status), time);
@@ -304,6 +319,9 @@ class Driver {
   ChargerSlots& slots_;
   SimulatedVehicle vehicle_;
   std::unique_ptr<Tracker> tracker_;
+  std::unique_ptr<Estimator> estimator_;
+  VehicleEstimate known_;
+  Command told_;  // at the last tick
   std::vector<double> leg_speed_;
   Reference reference_;
   std::vector<double> worst_;  // largest cross-track error of each leg

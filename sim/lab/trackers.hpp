@@ -2,28 +2,80 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
+#include <utility>
 
+#include "control/estimation/estimator.hpp"
+#include "control/estimation/estimation_config.hpp"
 #include "control/lookahead_rover/rover_tracker.hpp"
 #include "control/pure_pursuit/pure_pursuit.hpp"
+#include "control/receding_horizon/horizon_estimator.hpp"
+#include "control/receding_horizon/horizon_tracker.hpp"
 #include "sim/simulated_vehicle.hpp"
 
 namespace headland {
 
-/// The trackers' settings; the vehicle's kinematics says which one drives.
+enum class TrackerKind {
+  kAuto,         ///< pure pursuit for Ackermann, the rover's for differential vehicles
+  kPurePursuit,  ///< ours
+  kRover,        ///< ours
+  kRhmc          ///< receding horizon
+};
+
+enum class EstimatorKind {
+  kSensors,  ///< none: the sensors' last word, and no slip
+  kEkf,
+  kRhe
+};
+
+/// Who drives, on whose word, and their settings.
 struct ControlConfig {
+  TrackerKind tracker = TrackerKind::kAuto;
+  EstimatorKind estimator = EstimatorKind::kSensors;
   PurePursuitConfig pure_pursuit;
   RoverTrackerConfig rover;
+  HorizonConfig rhmc;
+  EstimationConfig estimation;
+  HorizonEstimatorConfig rhe;
 
   template <class V>
   void visit(V& v) {
-    v("pure_pursuit", pure_pursuit, "Of Ackermann vehicles");
-    v("rover", rover, "Of differential vehicles");
+    v("tracker", tracker, "Who drives, on any vehicle");
+    v("estimator", estimator, "Who tells the state, and what slip is known");
+    v("pure_pursuit", pure_pursuit, "Of pure pursuit");
+    v("rover", rover, "Of the rover's follower");
+    v("rhmc", rhmc, "Of the receding-horizon controller");
+    v("estimation", estimation, "The noise that estimators expect");
+    v("rhe", rhe, "Of the receding-horizon estimator");
   }
 };
 
-/// Pure pursuit for Ackermann, the rover tracker for differential kinematics; a filter that is told
-/// no accuracy takes that of the simulated fixes.
+/// The tracker for a vehicle, at steps of `cycle` [s]: slip-aware where an estimator tells the slip,
+/// with an adapter where it is made for the other kinematics. A position filter that is told no
+/// accuracy takes that of the simulated fixes, unless an estimator filters already.
 std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig control,
-                                      const SensorConfig& sensors);
+                                      const SensorConfig& sensors, double cycle,
+                                      const Clock* clock = nullptr);
+
+/// Null for kSensors.
+std::unique_ptr<Estimator> make_estimator(const Vehicle& vehicle, const ControlConfig& control,
+                                          double cycle);
 
 }  // namespace headland
+
+template <>
+struct headland::config::EnumNames<headland::TrackerKind> {
+  static constexpr std::pair<headland::TrackerKind, std::string_view> values[] = {
+      {headland::TrackerKind::kAuto, "auto"},
+      {headland::TrackerKind::kPurePursuit, "pure_pursuit"},
+      {headland::TrackerKind::kRover, "rover"},
+      {headland::TrackerKind::kRhmc, "rhmc"}};
+};
+
+template <>
+struct headland::config::EnumNames<headland::EstimatorKind> {
+  static constexpr std::pair<headland::EstimatorKind, std::string_view> values[] = {
+      {headland::EstimatorKind::kSensors, "sensors"},
+      {headland::EstimatorKind::kEkf, "ekf"},
+      {headland::EstimatorKind::kRhe, "rhe"}};
+};

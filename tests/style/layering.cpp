@@ -51,6 +51,7 @@ struct Library {
 const std::vector<Library>& libraries() {
   static const std::vector<Library> kLibraries = {
       {"Eigen/", {}},
+      {"unsupported/Eigen/", {}},
       {"tl/", {}},
       {"fmt/", {}},
       {"sys/", {}},
