@@ -10,6 +10,7 @@
 #include "sim/lab/ebs221_study.hpp"
 #include "sim/lab/energy_study.hpp"
 #include "sim/lab/polito_study.hpp"
+#include "sim/lab/tracking_study.hpp"
 
 namespace headland::apps {
 namespace {
@@ -43,11 +44,16 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
       return run_energy_study(config, jobs);
     });
   }
+  if (name == "tracking") {
+    return run_as<TrackingStudyConfig>(node, max_episodes, [&](const TrackingStudyConfig& config) {
+      return run_tracking_study(config, jobs);
+    });
+  }
   Location where = study ? study->where() : node.where();
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: ebs221, energy, polito", where);
+              "allowed: ebs221, energy, polito, tracking", where);
 }
 
 }  // namespace

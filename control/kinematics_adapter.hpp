@@ -9,9 +9,9 @@
 namespace headland {
 
 /// Lets a tracker for the one kind of kinematics drive a vehicle of the other. An Ackermann vehicle
-/// steers the curvature that a differential tracker's yaw rate means; a differential vehicle follows
-/// a steering angle that is turned in its stead, as fast as `twin()` can. An Ackermann vehicle cannot
-/// turn on the spot: told to, it stands.
+/// steers the curvature that a differential tracker's yaw rate means; a differential vehicle
+/// follows a steering angle that is turned in its stead, as fast as `twin()` can. An Ackermann
+/// vehicle cannot turn on the spot: told to, it stands.
 class KinematicsAdapter : public Tracker {
  public:
   /// `tracker` was made for twin(vehicle).

@@ -14,6 +14,7 @@ constexpr double kStill = 1e-3;  // slower counts as standing [m/s]
 constexpr double kTangentFrom = 0.05;
 // Path::at() at a segment's end is already the next segment; this much before it is not [m].
 constexpr double kBeforeEnd = 1e-9;
+constexpr double kPastCusp = 2e-6;  // and this much behind it is [m]
 
 bool is_finite(const VehicleState& state) {
   return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
@@ -137,7 +138,9 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
   if (!(nearest.distance <= config_.lost_beyond_m)) return stop(measured, TrackStatus::kPathLost);
   const double left = remaining(pose, nearest.s);
   if (left <= config_.stop_tolerance_m) return arrive(measured);
-  s_ = std::clamp(nearest.s, s_, now.end_s - kBeforeEnd);
+  // On a cusp, of the two segments that meet there, this one.
+  const double least = std::max(s_, now.begin_s + kPastCusp);
+  s_ = std::clamp(nearest.s, least, std::max(least, now.end_s - kBeforeEnd));
 
   const double most = vehicle_.acceleration_mps2 * dt;
   const double direction = sign(now.gear);

@@ -17,6 +17,9 @@ constexpr double kLeastVariance = 1e-10;  // of the pose over a block that stand
 constexpr double kLeastSlip = 1e-12;      // and of the slip
 constexpr double kBoundWeight = 1e8;      // of a slip beyond its bound, squared
 
+// Slower, the slip shows too little in the measurements to look for steps of it [m/s].
+constexpr double kSlowest = 0.3;
+
 // Lengths of the blocks of a full window, oldest first.
 std::vector<int> block_lengths(const HorizonEstimatorConfig& config, int intervals) {
   if (config.blocking == NoiseBlocking::kNone) {
@@ -344,6 +347,7 @@ void HorizonEstimator::doubt_the_newest() {
   const double fresh = config_.fresh_s / (stride_ * log_.cycle());
   for (int b = 0; b < block_count_; ++b) {
     if (length() - block(b).first > fresh + 0.5) continue;
+    if (std::abs(grid(block(b).first)(3)) < kSlowest) continue;
     block(b).trust = block(b).trust.cwiseMin(config_.fresh_weight);
   }
 }

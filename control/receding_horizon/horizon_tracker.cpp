@@ -307,7 +307,8 @@ TrackOutput HorizonTracker::drive(const VehicleState& then, double dt) {
   const double left = remaining(then.pose, nearest.s);
   if (left <= config_.stop_tolerance_m) return arrive(then);
   // On a cusp, of the two segments that meet there, this one.
-  s_ = std::clamp(nearest.s, std::max(s_, now.begin_s + kPastCusp), now.end_s - kBeforeEnd);
+  const double least = std::max(s_, now.begin_s + kPastCusp);
+  s_ = std::clamp(nearest.s, least, std::max(least, now.end_s - kBeforeEnd));
 
   problem_.start << then.pose.x, then.pose.y, then.pose.yaw, then.speed, turn_of(then);
   const double path_yaw = path.at(inside(nearest.s)).pose.yaw - problem_.slip.side_rad;

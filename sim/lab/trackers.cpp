@@ -8,11 +8,14 @@
 namespace headland {
 namespace {
 
-// For a vehicle of the kinematics that the tracker is made for.
+// For a vehicle of the kinematics that the tracker is made for; a dead time that is not set is the
+// vehicle's.
 std::unique_ptr<Tracker> make_own(const Vehicle& vehicle, TrackerKind kind,
                                   const ControlConfig& control) {
   if (kind == TrackerKind::kPurePursuit) {
-    return std::make_unique<PurePursuit>(vehicle, control.pure_pursuit);
+    PurePursuitConfig config = control.pure_pursuit;
+    if (config.dead_time_s == 0.0) config.dead_time_s = vehicle.steering_dead_time_s;
+    return std::make_unique<PurePursuit>(vehicle, config);
   }
   return std::make_unique<RoverTracker>(vehicle, control.rover);
 }
@@ -41,8 +44,8 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
   } else {
     if (ackermann) control.rover.pivot_from_deg = 180.0;
     const Vehicle twin = KinematicsAdapter::twin(vehicle);
-    tracker = std::make_unique<KinematicsAdapter>(vehicle,
-                                                  make_own(twin, control.tracker, control));
+    tracker =
+        std::make_unique<KinematicsAdapter>(vehicle, make_own(twin, control.tracker, control));
   }
   if (!estimated) return tracker;
   return std::make_unique<SlipCompensation>(vehicle, std::move(tracker));

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <utility>
 
-#include "control/estimation/estimator.hpp"
 #include "control/estimation/estimation_config.hpp"
+#include "control/estimation/estimator.hpp"
 #include "control/lookahead_rover/rover_tracker.hpp"
 #include "control/pure_pursuit/pure_pursuit.hpp"
 #include "control/receding_horizon/horizon_estimator.hpp"
@@ -50,9 +50,9 @@ struct ControlConfig {
   }
 };
 
-/// The tracker for a vehicle, at steps of `cycle` [s]: slip-aware where an estimator tells the slip,
-/// with an adapter where it is made for the other kinematics. A position filter that is told no
-/// accuracy takes that of the simulated fixes, unless an estimator filters already.
+/// The tracker for a vehicle, at steps of `cycle` [s]: slip-aware where an estimator tells the
+/// slip, with an adapter where it is made for the other kinematics. A position filter that is told
+/// no accuracy takes that of the simulated fixes, unless an estimator filters already.
 std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig control,
                                       const SensorConfig& sensors, double cycle,
                                       const Clock* clock = nullptr);
