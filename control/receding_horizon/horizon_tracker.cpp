@@ -19,6 +19,7 @@ constexpr double kBeforeEnd = 1e-9;      // Path::at() at a segment's end is alr
 constexpr double kPastCusp = 2e-6;       // [m]
 constexpr double kSpeedRoom = 1.1;       // of the reference's speed that a plan may use
 constexpr double kLeastSpeedRoom = 0.2;  // and at least [m/s]
+constexpr double kBrakeShare = 0.9;      // of the braking that plans use; feedback has the rest
 constexpr int kFirstSolves = 5;          // without a plan to start from
 
 bool is_finite(const VehicleState& state) {
@@ -76,9 +77,10 @@ std::optional<Error> HorizonConfig::check() const {
 }
 
 HorizonTracker::HorizonTracker(const Vehicle& vehicle, const HorizonConfig& config, double cycle,
-                               const Clock* clock)
+                               const Clock* clock, const SpeedLimitConfig& limits)
     : vehicle_(vehicle),
       config_(config),
+      limits_(limits),
       cycle_(cycle),
       clock_(clock),
       delay_(vehicle, cycle),
@@ -107,8 +109,10 @@ Result<void> HorizonTracker::do_start() {
   if (auto error = check_curvature(vehicle_, reference().path, most_angle)) {
     return tl::unexpected<Error>(std::move(*error));
   }
-  const double braking = std::min(1.0, -problem_.acceleration.low / vehicle_.acceleration_mps2);
-  profile_.build(reference(), problem_.acceleration.high, reference().zones, 0.9 * braking);
+  const double braking = std::min(1.0, -problem_.acceleration.low / problem_.acceleration.high);
+  profile_.build(reference(), problem_.acceleration.high,
+                 speed_zones(reference(), vehicle_, limits_),
+                 kBrakeShare * limits_.brake_ratio * braking);
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kStanding;
   segment_ = 0;
   s_ = 0.0;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "control/receding_horizon/horizon_solver.hpp"
+#include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
 #include "control/tracker.hpp"
 #include "core/base/error.hpp"
@@ -92,7 +93,7 @@ class HorizonTracker : public Tracker {
  public:
   /// `cycle` [s] is the time between steps. Without a `clock` there are no deadlines.
   HorizonTracker(const Vehicle& vehicle, const HorizonConfig& config, double cycle,
-                 const Clock* clock = nullptr);
+                 const Clock* clock = nullptr, const SpeedLimitConfig& limits = {});
 
   const HorizonCounts& counts() const { return counts_; }
   /// The plan that drives now, and the problem it solves.
@@ -129,6 +130,7 @@ class HorizonTracker : public Tracker {
 
   Vehicle vehicle_;
   HorizonConfig config_;
+  SpeedLimitConfig limits_;
   double cycle_;
   const Clock* clock_;
   CommandDelay delay_;

@@ -15,9 +15,9 @@ std::unique_ptr<Tracker> make_own(const Vehicle& vehicle, TrackerKind kind,
   if (kind == TrackerKind::kPurePursuit) {
     PurePursuitConfig config = control.pure_pursuit;
     if (config.dead_time_s == 0.0) config.dead_time_s = vehicle.steering_dead_time_s;
-    return std::make_unique<PurePursuit>(vehicle, config);
+    return std::make_unique<PurePursuit>(vehicle, config, control.limits);
   }
-  return std::make_unique<RoverTracker>(vehicle, control.rover);
+  return std::make_unique<RoverTracker>(vehicle, control.rover, control.limits);
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
                                       const SensorConfig& sensors, double cycle,
                                       const Clock* clock) {
   if (control.tracker == TrackerKind::kRhmc) {
-    return std::make_unique<HorizonTracker>(vehicle, control.rhmc, cycle, clock);
+    return std::make_unique<HorizonTracker>(vehicle, control.rhmc, cycle, clock, control.limits);
   }
   const bool estimated = control.estimator != EstimatorKind::kSensors;
   for (PositionFilterConfig* filter : {&control.pure_pursuit.filter, &control.rover.filter}) {

@@ -11,6 +11,7 @@
 #include "control/pure_pursuit/pure_pursuit.hpp"
 #include "control/receding_horizon/horizon_estimator.hpp"
 #include "control/receding_horizon/horizon_tracker.hpp"
+#include "control/speed_limits.hpp"
 #include "sim/simulated_vehicle.hpp"
 
 namespace headland {
@@ -37,6 +38,7 @@ struct ControlConfig {
   HorizonConfig rhmc;
   EstimationConfig estimation;
   HorizonEstimatorConfig rhe;
+  SpeedLimitConfig limits;
 
   template <class V>
   void visit(V& v) {
@@ -47,6 +49,7 @@ struct ControlConfig {
     v("rhmc", rhmc, "Of the receding-horizon controller");
     v("estimation", estimation, "The noise that estimators expect");
     v("rhe", rhe, "Of the receding-horizon estimator");
+    v("limits", limits, "What slows the vehicle down below its legs' speeds");
   }
 };
 
