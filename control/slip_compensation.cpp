@@ -8,6 +8,8 @@ namespace headland {
 namespace {
 
 constexpr double kMostLoss = 0.9;  // a wheel that spins more is not sped up further
+// Slower is a standstill: trackers wait for one, and an estimate never quite is [m/s].
+constexpr double kStill = 0.02;
 
 }  // namespace
 
@@ -19,7 +21,7 @@ TrackOutput SlipCompensation::do_step(const VehicleEstimate& estimate, double dt
   VehicleEstimate ideal(estimate.state);
   VehicleState& state = ideal.state;
   state.pose.yaw = wrap_angle(state.pose.yaw + slip.side_rad);
-  state.speed *= keep;
+  state.speed = std::abs(state.speed) < kStill ? 0.0 : state.speed * keep;
   state.steering = std::atan(side * std::tan(state.steering + slip.steering_offset_rad));
   state.yaw_rate = keep * state.yaw_rate + state.speed * offset;
   TrackOutput output = tracker_->step(ideal, dt);

@@ -22,6 +22,11 @@ struct EstimationConfig {
   double first_offset_deg = 2.0;
   double first_position_m = 0.05;
   double first_heading_deg = 1.0;
+  double least_position_m = 0.003;
+  double least_heading_deg = 0.1;
+  double least_speed_mps = 0.01;
+  double least_turn_deg = 0.1;
+  double least_yaw_rate_radps = 0.01;
   double most_loss_ratio = 0.6;
   double most_side_deg = 20.0;
   double most_offset_deg = 12.0;
@@ -53,6 +58,14 @@ struct EstimationConfig {
     v("first_position_m", first_position_m, config::kPositive, "Of the position at the start [m]");
     v("first_heading_deg", first_heading_deg, config::kPositive,
       "Of the heading at the start [deg]");
+    v("least_position_m", least_position_m, config::kPositive,
+      "No position is trusted more than this, however exact: the model is not [m]");
+    v("least_heading_deg", least_heading_deg, config::kPositive, "No heading likewise [deg]");
+    v("least_speed_mps", least_speed_mps, config::kPositive, "No wheel speed likewise [m/s]");
+    v("least_turn_deg", least_turn_deg, config::kPositive,
+      "No steering angle likewise, nor in degrees a second a yaw rate of wheels [deg]");
+    v("least_yaw_rate_radps", least_yaw_rate_radps, config::kPositive,
+      "No gyroscope likewise [rad/s]");
     v("most_loss_ratio", most_loss_ratio, config::Range{0.0, 0.9},
       "Bound of the longitudinal slip, both ways");
     v("most_side_deg", most_side_deg, config::Range{0.0, 60.0},

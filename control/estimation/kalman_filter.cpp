@@ -118,6 +118,25 @@ EstimateVector EstimationModel::noise(const EstimateVector& state, double dt) co
   return std::abs(state(kDriveAt + kSpeed)) * dt * per_metre_ + dt * per_second_;
 }
 
+double EstimationModel::variance(const Measurement& measurement) const {
+  const auto least = [&] {
+    switch (measurement.kind) {
+      case MeasurementKind::kPosition:
+        return config_.least_position_m;
+      case MeasurementKind::kHeading:
+        return deg_to_rad(config_.least_heading_deg);
+      case MeasurementKind::kSpeed:
+        return config_.least_speed_mps;
+      case MeasurementKind::kTurn:
+        return deg_to_rad(config_.least_turn_deg);
+      case MeasurementKind::kYawRate:
+        break;
+    }
+    return config_.least_yaw_rate_radps;
+  };
+  return squared(std::max(measurement.deviation, least()));
+}
+
 void EstimationModel::keep_bounds(EstimateVector& state) const {
   state.tail<3>() = state.tail<3>().cwiseMax(-slip_bounds_).cwiseMin(slip_bounds_);
 }
@@ -159,7 +178,7 @@ void KalmanFilter::predict(const Command& acting, double dt, const Eigen::Vector
 // One number after the other: their noises are independent.
 void KalmanFilter::update(const Measurement& measurement) {
   const MeasurementModel seen = model_measurement(model_->motion(), state_, measurement);
-  const double variance = squared(measurement.deviation);
+  const double variance = model_->variance(measurement);
   EstimateVector change = EstimateVector::Zero();
   for (int i = 0; i < seen.size; ++i) {
     const EstimateVector row = seen.by_state.row(i).transpose();

@@ -47,6 +47,8 @@ class EstimationModel {
   EstimateVector coast(const EstimateVector& state, const Command& acting, double dt) const;
   /// Variances that `dt` [s] at the speed of `state` add, the pose's first.
   EstimateVector noise(const EstimateVector& state, double dt) const;
+  /// Of a measurement's noise, with what the model may be off on top.
+  double variance(const Measurement& measurement) const;
   void keep_bounds(EstimateVector& state) const;
   /// Largest magnitude of loss ratio, side slip [rad] and steering offset [rad].
   const Eigen::Vector3d& slip_bounds() const { return slip_bounds_; }

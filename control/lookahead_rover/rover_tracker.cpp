@@ -86,7 +86,8 @@ Command RoverTracker::drive(const VehicleState& measured, const Errors& errors, 
   }
   const double rate =
       std::clamp(speed * curvature, -config_.max_yaw_rate_radps, config_.max_yaw_rate_radps);
-  return {sign(gear) * speed, 0.0, rate};
+  const double told = command_through_lag(speed, now, vehicle_.speed_lag_s, dt);
+  return {sign(gear) * told, 0.0, rate};
 }
 
 // Brakes, then turns on the spot: the last cycles bring the error down by a quarter each.

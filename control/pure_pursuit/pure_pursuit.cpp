@@ -161,7 +161,8 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
   const double feedback = pursuit(then, target) - pursuit(planned_pose(s), target);
   const double curvature = plan_.at(path, inside(s), segment_).curvature + feedback;
   const double angle = std::atan(vehicle_.wheelbase_m * curvature);
-  return {{direction * speed, command_angle(angle, measured.steering, dt), 0.0},
+  const double told = command_through_lag(speed, v, vehicle_.speed_lag_s, dt);
+  return {{direction * told, command_angle(angle, measured.steering, dt), 0.0},
           TrackStatus::kTracking,
           s_};
 }

@@ -224,7 +224,7 @@ void HorizonEstimator::add_measurements(Block& from, Block& to, int j, Chain& ch
     move_to(std::clamp((next_measurement_->time - time) / interval, 0.0, 1.0));
     const MeasurementModel seen =
         model_measurement(model_.motion(), chain.state, *next_measurement_);
-    const double weight = 1.0 / (next_measurement_->deviation * next_measurement_->deviation);
+    const double weight = 1.0 / model_.variance(*next_measurement_);
     for (int i = 0; i < seen.size; ++i) {
       const Eigen::Matrix<double, 1, 3> pose = seen.by_state.row(i).head<3>();
       const Eigen::Matrix<double, 1, kDriveSize> drive = seen.by_state.row(i).tail<kDriveSize>();

@@ -13,7 +13,7 @@
 namespace headland {
 namespace {
 
-constexpr double kStill = 1e-3;          // slower counts as standing [m/s]
+constexpr double kStill = 0.02;          // slower counts as standing, estimated as it is [m/s]
 constexpr double kTangentFrom = 0.05;    // of a segment's end, where its tangent measures [m]
 constexpr double kBeforeEnd = 1e-9;      // Path::at() at a segment's end is already the next one
 constexpr double kPastCusp = 2e-6;       // [m]
@@ -49,11 +49,6 @@ std::unique_ptr<HorizonSolver> make_solver(const HorizonConfig& config) {
     return std::make_unique<IpoptSolver>(config.intervals_count);
   }
   return std::make_unique<RtiSolver>(config.intervals_count);
-}
-
-// The command that brings an actuator to `wanted` after `dt` in spite of its lag.
-double through_lag(double wanted, double actual, double lag, double dt) {
-  return lag > 0.0 ? actual + (wanted - actual) / (1.0 - std::exp(-dt / lag)) : wanted;
 }
 
 }  // namespace
@@ -186,9 +181,9 @@ TrackOutput HorizonTracker::stand(const VehicleState& then) {
   if (std::abs(then.speed) > kStill) return stop(status);
   gear_left_ -= cycle_;
   steering_left_ -= cycle_;
-  const double angle =
-      ackermann() ? through_lag(standing_angle(), then.steering, vehicle_.steering_lag_s, cycle_)
-                  : 0.0;
+  const double angle = ackermann() ? command_through_lag(standing_angle(), then.steering,
+                                                         vehicle_.steering_lag_s, cycle_)
+                                   : 0.0;
   const double limit = vehicle_.max_steering_rad();
   return give({0.0, std::clamp(angle, -limit, limit), 0.0}, status);
 }
@@ -291,8 +286,8 @@ Command HorizonTracker::first_command(const VehicleState& then, double dt) const
   const double turn = (stale_ > 0 ? plan_.states[0](kWheelTurn) : turn_of(then)) + u(1) * dt;
   const double lag = vehicle_.steering_lag_s;
   Command command;
-  command.speed = through_lag(speed, then.speed, vehicle_.speed_lag_s, dt);
-  const double told = through_lag(turn, turn_of(then), lag, dt);
+  command.speed = command_through_lag(speed, then.speed, vehicle_.speed_lag_s, dt);
+  const double told = command_through_lag(turn, turn_of(then), lag, dt);
   if (ackermann()) {
     command.steering = std::clamp(told, turn_.low, turn_.high);
   } else {

@@ -23,8 +23,8 @@ struct HorizonConfig {
   HorizonSolverKind solver = HorizonSolverKind::kRti;
   int intervals_count = 15;
   double interval_s = 0.2;
-  double steering_low_deg = -40.0;
-  double steering_high_deg = 40.0;
+  double steering_low_deg = -80.0;
+  double steering_high_deg = 80.0;
   double acceleration_low_mps2 = -100.0;
   double acceleration_high_mps2 = 100.0;
   double max_yaw_rate_radps = 2.0;

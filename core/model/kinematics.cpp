@@ -35,6 +35,10 @@ double step_yaw_rate(const Vehicle& vehicle, double actual, double command, doub
   return actual + std::clamp(way, -most, most);
 }
 
+double command_through_lag(double wanted, double actual, double lag, double dt) {
+  return lag > 0.0 ? actual + (wanted - actual) / (1.0 - std::exp(-dt / lag)) : wanted;
+}
+
 VehicleState step_vehicle(const Vehicle& vehicle, const VehicleState& state, const Command& command,
                           double dt, const Slip& slip) {
   VehicleState next = state;

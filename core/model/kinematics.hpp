@@ -46,6 +46,10 @@ double step_speed(const Vehicle& vehicle, double actual, double command, double 
 /// the limit of yaw acceleration.
 double step_yaw_rate(const Vehicle& vehicle, double actual, double command, double dt);
 
+/// The command that brings an actuator to `wanted` after `dt` [s] in spite of its first-order lag
+/// [s]; its limits aside.
+double command_through_lag(double wanted, double actual, double lag, double dt);
+
 /// The state after `dt` [s] under a held command, which acts at once (dead times are the caller's:
 /// CommandDelay). Speed, steering and yaw rate as in the functions above; the pose moves along the
 /// exact arc of the mean speed and the new steering (Ackermann) or yaw rate (differential, pivot
