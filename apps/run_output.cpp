@@ -67,14 +67,17 @@ std::string metrics_json(const FleetRun& run, const std::vector<VehiclePlan>& pl
 std::string trace_csv(const FleetRun& run, const std::vector<VehiclePlan>& plans, double period) {
   std::string text =
       "t_s,vehicle,x_m,y_m,yaw_rad,speed_mps,steering_rad,yaw_rate_radps,s_m,cross_track_m,soc,"
-      "gear,leg\n";
+      "gear,leg,loss_ratio,side_rad,steering_offset_rad,known_loss_ratio,known_side_rad,"
+      "known_steering_offset_rad,position_error_m\n";
   auto out = std::back_inserter(text);
   for (const FleetTick& at : fleet_ticks(run, period)) {
     const TraceRow& row = run.vehicles[at.vehicle].trace[at.tick];
-    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s, plans[at.vehicle].id,
-                   row.x_m, row.y_m, row.yaw_rad, row.speed_mps, row.steering_rad,
-                   row.yaw_rate_radps, row.s_m, row.cross_track_m, row.soc,
-                   static_cast<int>(row.gear), row.leg);
+    fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.t_s,
+                   plans[at.vehicle].id, row.x_m, row.y_m, row.yaw_rad, row.speed_mps,
+                   row.steering_rad, row.yaw_rate_radps, row.s_m, row.cross_track_m, row.soc,
+                   static_cast<int>(row.gear), row.leg, row.slip.loss_ratio, row.slip.side_rad,
+                   row.slip.steering_offset_rad, row.known_slip.loss_ratio, row.known_slip.side_rad,
+                   row.known_slip.steering_offset_rad, row.position_error_m);
   }
   return text;
 }

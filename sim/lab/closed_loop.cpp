@@ -174,13 +174,14 @@ class Driver {
   void drive(double time) {
     const TrackOutput output = tracker_->step(known_, config_.step_s);
     told_ = output.command;
+    const Point2 before = vehicle_.truth().pose.position();
     if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
       return arrive(time);
     }
     if (failed(output.status)) return give_up(describe(output.status), time);
     const Path& path = stage().path;
     vehicle_.step(output.command, plan_.legs[static_cast<std::size_t>(path.at(output.s).leg)].kind);
-    record(path, output, time);
+    record(path, output, before, time);
     if (std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
       return give_up("the vehicle left its path", time);
     }
@@ -245,7 +246,7 @@ class Driver {
 
   // Projects the true position onto the path around the tracker's progress, never across a cusp
   // (the path runs back on itself there), and appends a trace row.
-  void record(const Path& path, const TrackOutput& output, double time) {
+  void record(const Path& path, const TrackOutput& output, const Point2& before, double time) {
     const VehicleState& truth = vehicle_.truth();
     // On a cusp the tracker is still on the segment that ends there.
     const double s = std::max(0.0, output.s - kOnCusp);
@@ -257,7 +258,9 @@ class Driver {
     progress_s_ = projection.s;
     run_.trace.push_back({time, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed,
                           truth.steering, output.command.yaw_rate, stage_start_s_ + projection.s,
-                          projection.lateral_error, vehicle_.soc(), at.gear, at.leg});
+                          projection.lateral_error, vehicle_.soc(), at.gear, at.leg,
+                          vehicle_.slip(), known_.slip,
+                          (known_.state.pose.position() - before).norm()});
     const auto leg = static_cast<std::size_t>(at.leg);
     worst_[leg] = std::max(worst_[leg], std::abs(projection.lateral_error));
     run_.leg_done[leg] = true;

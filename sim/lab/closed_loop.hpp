@@ -56,6 +56,9 @@ struct TraceRow {
   double soc = 1.0;
   Gear gear = Gear::kForward;
   int leg = 0;
+  Slip slip;                      ///< that the wheels had
+  Slip known_slip;                ///< that the tracker was told
+  double position_error_m = 0.0;  ///< of the position that the tracker was told
 };
 
 /// What a run amounts to (metrics.json).
