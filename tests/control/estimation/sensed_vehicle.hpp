@@ -122,8 +122,8 @@ struct SensedDrive {
     while (truth.time() < seconds - 1e-9) {
       const double time = truth.time();
       const Command given = command ? command(time) : weave(speed, time);
-      const std::vector<Measurement> measured =
-          deliver(truth.step(given, slip(time)), truth.time());
+      const std::vector<Measurement> all = truth.step(given, slip(time));
+      const std::vector<Measurement> measured = deliver(all, truth.time());
       result = {estimator.update(measured, given, truth.time()), truth.state};
       if (look) look(result, truth.time());
     }
