@@ -32,7 +32,10 @@ Estimate EkfEstimator::update(std::span<const Measurement> measured, const Comma
   if (good) now_ = newest;
   Estimate estimate =
       make_estimate(model_, log_, now_.state(), now_.covariance().diagonal().cwiseMax(0.0));
-  if (!good) estimate.status = EstimateStatus::kFailed;
+  if (!good) {
+    estimate.status = EstimateStatus::kFailed;
+    if (!behind_.finite()) behind_.reset(now_.state(), model_.first_covariance());
+  }
   return estimate;
 }
 

@@ -13,6 +13,8 @@ class EkfEstimator : public Estimator {
  public:
   /// `cycle` [s]: of the updates.
   EkfEstimator(const Vehicle& vehicle, const EstimationConfig& config, double cycle);
+  EkfEstimator(const EkfEstimator&) = delete;  // its filters point to its model
+  EkfEstimator& operator=(const EkfEstimator&) = delete;
 
   void reset(const VehicleState& start, double now) override;
   Estimate update(std::span<const Measurement> measured, const Command& last, double now) override;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace headland {
 namespace {
@@ -13,6 +14,10 @@ constexpr std::size_t kMostMeasurements = 16384;  // kept
 bool is_usable(const Measurement& m) {
   return std::isfinite(m.time) && std::isfinite(m.value[0]) && std::isfinite(m.value[1]) &&
          std::isfinite(m.deviation) && m.deviation > 0.0;
+}
+
+bool is_usable(const Command& c) {
+  return std::isfinite(c.speed) && std::isfinite(c.steering) && std::isfinite(c.yaw_rate);
 }
 
 }  // namespace
@@ -32,6 +37,7 @@ void EstimationLog::reset(double now) {
   start_ = now;
   now_ = base_ = 0;
   last_position_ = now;
+  late_ = refused_ = 0;
 }
 
 const Command& EstimationLog::acting(long cycle) const {
@@ -39,9 +45,12 @@ const Command& EstimationLog::acting(long cycle) const {
 }
 
 void EstimationLog::take(std::span<const Measurement> measured, const Command& last, double now) {
+  now = std::isfinite(now) ? std::max(now, time(now_)) : time(now_);
   const long cycles = std::max(now_, std::lround((now - start_) / cycle_));
+  const Command given = is_usable(last) ? last : Command{};
   for (; now_ < cycles; ++now_) {
-    acting_[static_cast<std::size_t>(now_ % static_cast<long>(acting_.size()))] = delay_.push(last);
+    acting_[static_cast<std::size_t>(now_ % static_cast<long>(acting_.size()))] =
+        delay_.push(given);
   }
   for (const Measurement& measurement : measured) {
     if (!is_usable(measurement) || measurement.time > now + kSameTime) {
@@ -64,9 +73,11 @@ void EstimationLog::sort_in(const Measurement& measurement) {
     late_ += first_ == 0 ? 1 : 0;
     first_ = 0;
   }
-  const auto later = std::upper_bound(
-      measurements_.begin() + static_cast<std::ptrdiff_t>(first_), measurements_.end(), measurement,
-      [](const Measurement& a, const Measurement& b) { return a.time < b.time; });
+  const auto later = std::upper_bound(measurements_.begin() + static_cast<std::ptrdiff_t>(first_),
+                                      measurements_.end(), measurement,
+                                      [](const Measurement& a, const Measurement& b) {
+                                        return std::tie(a.time, a.kind) < std::tie(b.time, b.kind);
+                                      });
   measurements_.insert(later, measurement);
 }
 

@@ -20,7 +20,7 @@ class EstimationLog {
   void reset(double now);
   /// Moves on to `now` [s], the last command acting meanwhile after its dead time, and sorts the
   /// measurements in. One from the future or that is no number is refused, one older than the base
-  /// is late.
+  /// is late. A command that is no number counts as a stop, a time that is none as no progress.
   void take(std::span<const Measurement> measured, const Command& last, double now);
   /// Forgets what is older than cycle `base`.
   void forget_before(long base);
@@ -30,7 +30,7 @@ class EstimationLog {
   long base() const { return base_; }      ///< [cycles]
   double time(long cycles) const { return start_ + static_cast<double>(cycles) * cycle_; }  ///< [s]
   const Command& acting(long cycle) const;  ///< in the cycle that begins there
-  /// By time, oldest first.
+  /// By time, oldest first; of one time, by kind: the order of arrival does not matter.
   std::span<const Measurement> measurements() const {
     return {measurements_.data() + first_, measurements_.size() - first_};
   }
