@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/simulated_vehicle.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace headland {
@@ -147,6 +149,192 @@ TEST(SimulatedVehicle, WithoutErrorsTheFixIsTheTruth) {
   SimulatedVehicle sim(rover(), {3.0, 4.0, 1.0}, 1.0, {}, 1, kCycle);
   EXPECT_EQ(sim.measure().pose.x, sim.truth().pose.x);
   EXPECT_EQ(sim.measure().pose.yaw, sim.truth().pose.yaw);
+}
+
+Vehicle tractor() {
+  Vehicle vehicle;
+  vehicle.name = "tractor";
+  vehicle.energy.mass_kg = 1000.0;
+  return vehicle;
+}
+
+// A command for each step, with reversing and both turns.
+Command command_at(int step) {
+  const double t = kCycle * step;
+  return {1.5 * std::cos(0.4 * t), 0.4 * std::sin(0.7 * t), 0.5 * std::sin(0.9 * t)};
+}
+
+bool same(const VehicleState& a, const VehicleState& b) {
+  return a.pose.x == b.pose.x && a.pose.y == b.pose.y && a.pose.yaw == b.pose.yaw &&
+         a.speed == b.speed && a.steering == b.steering && a.yaw_rate == b.yaw_rate;
+}
+
+TEST(SimulatedVehicle, WithoutSlipItMovesAsStepVehicleToTheBit) {
+  for (const Vehicle& vehicle : {tractor(), rover()}) {
+    SimulatedVehicle sim(vehicle, {1.0, 2.0, 0.3}, 1.0, {}, 1, kCycle, ramp(0.1));
+    VehicleState state;
+    state.pose = {1.0, 2.0, 0.3};
+    for (int i = 0; i < 2000; ++i) {
+      sim.step(command_at(i), LegKind::kTransit);
+      state = step_vehicle(vehicle, state, command_at(i), kCycle);
+      ASSERT_TRUE(same(sim.truth(), state)) << i;
+    }
+  }
+}
+
+TEST(SimulatedVehicle, ConstantSlipIsThatOfStepVehicle) {
+  SimulatedVehicleConfig config;
+  config.slip.loss_ratio = 0.1;
+  config.slip.side_deg = 3.0;
+  config.slip.steering_offset_deg = 2.0;
+  const Slip slip{0.1, deg_to_rad(3.0), deg_to_rad(2.0)};
+  for (const Vehicle& vehicle : {tractor(), rover()}) {
+    SimulatedVehicle sim(vehicle, {}, 1.0, config, 1, kCycle);
+    VehicleState state;
+    for (int i = 0; i < 2000; ++i) {
+      sim.step(command_at(i), LegKind::kTransit);
+      const double yaw = state.pose.yaw;
+      state = step_vehicle(vehicle, state, command_at(i), kCycle, slip);
+      ASSERT_TRUE(same(sim.truth(), state)) << i;
+      EXPECT_EQ(sim.yaw_rate(), wrap_angle(state.pose.yaw - yaw) / kCycle);
+    }
+    EXPECT_EQ(sim.slip().side_rad, slip.side_rad);
+  }
+}
+
+TEST(SimulatedVehicle, DeadTimesActBeforeTheLags) {
+  Vehicle vehicle = tractor();
+  vehicle.speed_dead_time_s = 0.2;
+  vehicle.steering_dead_time_s = 0.4;
+  vehicle.speed_lag_s = 0.3;
+  vehicle.steering_lag_s = 0.1;
+  SimulatedVehicle sim(vehicle, {}, 1.0, {}, 1, kCycle);
+  VehicleState state;
+  for (int i = 0; i < 500; ++i) {
+    sim.step({1.0, 0.3, 0.0}, LegKind::kTransit);
+    const Command acting{i < 10 ? 0.0 : 1.0, i < 20 ? 0.0 : 0.3, 0.0};
+    state = step_vehicle(vehicle, state, acting, kCycle);
+    ASSERT_TRUE(same(sim.truth(), state)) << i;
+  }
+}
+
+TEST(SimulatedVehicle, DriftsDownhillForwardAndInReverse) {
+  SimulatedVehicleConfig config;
+  config.slip.terrain_factor_ratio = 1.0;
+  for (const Vehicle& vehicle : {tractor(), rover()}) {
+    for (const double speed : {1.0, -1.0}) {
+      for (const double yaw : {0.5 * kPi, -0.5 * kPi}) {
+        // Along the contour of z = 0.2 x: downhill is west.
+        SimulatedVehicle sim(vehicle, {0.0, 0.0, yaw}, 1.0, config, 1, kCycle, ramp(0.2));
+        drive(sim, speed, 1000);
+        EXPECT_NEAR(sim.truth().pose.x, -0.16 * 0.2 * sim.distance(), 0.002 * sim.distance());
+        EXPECT_NEAR(sim.truth().pose.yaw, yaw, 1e-9);
+        EXPECT_NEAR(sim.distance(), 20.0 * (1.0 - 0.16 * 0.05), 0.6);
+      }
+    }
+  }
+}
+
+TEST(SimulatedVehicle, DrawsForTheWayOfItsWheels) {
+  // The work at the wheels is the traction over the way that they roll, slip of any origin in it.
+  Vehicle vehicle = rover();
+  vehicle.energy.base_power_w = 0.0;
+  for (const double slope : {0.0, 0.1}) {
+    for (const double constant : {0.0, 0.2}) {
+      SimulatedVehicleConfig config;
+      config.slip.terrain_factor_ratio = 1.0;
+      config.slip.loss_ratio = constant;
+      SimulatedVehicle sim(vehicle, {-50.0, 0.0, 0.0}, 0.5, config, 1, kCycle, ramp(slope));
+      drive(sim, 1.0, 50);
+      const double before = sim.drawn_j();
+      const double x = sim.truth().pose.x;
+      drive(sim, 1.0, 2000);
+      const double traction = 200.0 * kGravity * (0.05 + slope);
+      const double rolled = 1.0 * 2000 * kCycle;
+      EXPECT_NEAR(sim.drawn_j() - before, traction * rolled / 0.8, 2e-5 * traction * rolled);
+      EXPECT_NEAR(sim.truth().pose.x - x, rolled * (1.0 - sim.slip().loss_ratio), 1e-6);
+      EXPECT_NEAR(sim.slip().loss_ratio, constant + 0.16 * (0.05 + slope), 1e-6);
+    }
+  }
+}
+
+TEST(SimulatedVehicle, TerrainSlipDrawsWhatPathCostPlans) {
+  Vehicle vehicle = rover();
+  vehicle.energy.base_power_w = 0.0;  // slip takes time, which plans do not know
+  vehicle.transit_speed_mps = 1.0;
+  SimulatedVehicleConfig config;
+  config.slip.terrain_factor_ratio = 1.0;
+  for (const double slope : {0.0, 0.05, 0.2, -0.2}) {
+    const Ground ground = ramp(slope);
+    SimulatedVehicle sim(vehicle, {-100.0, 0.0, 0.0}, 0.5, config, 1, kCycle, ground);
+    drive(sim, 1.0, 50);
+    const double drawn = sim.drawn_j();
+    Path path;
+    const Pose2 from = sim.truth().pose;
+    drive(sim, 1.0, 2000);
+    path.append_straight(from, sim.truth().pose.x - from.x, 0);
+    const auto planned = path_cost(vehicle, ground, path, LegKind::kTransit);
+    EXPECT_NEAR(sim.drawn_j() - drawn, planned->energy_j, 1e-5 * 200.0 * 60.0);
+  }
+}
+
+TEST(SimulatedVehicle, AStepOfTheSlipDoesNoWork) {
+  Vehicle vehicle = rover();
+  vehicle.energy.base_power_w = 0.0;
+  SimulatedVehicleConfig config;
+  config.slip.changes = {{5.0, 0.4, 0.0, 0.0}};
+  SimulatedVehicle sim(vehicle, {}, 0.5, config, 1, kCycle);
+  drive(sim, 1.0, 50);
+  for (int i = 0; i < 1000; ++i) {
+    const double before = sim.drawn_j();
+    drive(sim, 1.0, 1);
+    const double step = 200.0 * kGravity * 0.05 * kCycle / 0.8;  // at the wheels, about
+    EXPECT_NEAR(sim.drawn_j() - before, step, 0.02 * step) << i;
+  }
+  EXPECT_EQ(sim.slip().loss_ratio, 0.4);
+}
+
+TEST(SimulatedVehicle, SameSeedSameBytesAndSlipDoesNotChangeTheNoise) {
+  SimulatedVehicleConfig config;
+  config.slip.terrain_factor_ratio = 1.0;
+  config.slip.walk.loss_ratio = 0.05;
+  config.slip.walk.side_deg = 2.0;
+  config.sensors.position_accuracy_m = 0.02;
+  config.sensors.gnss.noise_m = 0.01;
+  config.sensors.gnss.latency_s = 0.1;
+  SimulatedVehicleConfig still = config;
+  still.slip = {};
+  SimulatedVehicle a(tractor(), {}, 1.0, config, 11, kCycle, ramp(0.1));
+  SimulatedVehicle b(tractor(), {}, 1.0, config, 11, kCycle, ramp(0.1));
+  SimulatedVehicle c(tractor(), {}, 1.0, still, 11, kCycle, ramp(0.1));
+  for (int i = 0; i < 500; ++i) {
+    for (SimulatedVehicle* sim : {&a, &b, &c}) sim->step(command_at(i), LegKind::kRow);
+    ASSERT_TRUE(same(a.truth(), b.truth()));
+    const double now = kCycle * (i + 1);
+    const auto one = a.sense(now);
+    const auto two = b.sense(now);
+    ASSERT_EQ(one.size(), two.size());
+    for (std::size_t k = 0; k < one.size(); ++k) EXPECT_EQ(one[k].value, two[k].value);
+    const double error = a.measure().pose.x - a.truth().pose.x;
+    EXPECT_NEAR(error, c.measure().pose.x - c.truth().pose.x, 1e-12);
+  }
+  EXPECT_EQ(a.drawn_j(), b.drawn_j());
+  EXPECT_GT((a.truth().pose.position() - c.truth().pose.position()).norm(), 0.01);
+}
+
+TEST(SimulatedVehicle, TheGyroscopeFeelsTheSlip) {
+  SimulatedVehicleConfig config;
+  config.slip.steering_offset_deg = 5.0;
+  SimulatedVehicle sim(tractor(), {}, 1.0, config, 1, kCycle);
+  drive(sim, 1.0, 200);
+  for (const Measurement& m : sim.sense(4.0)) {
+    if (m.kind == MeasurementKind::kYawRate) {
+      EXPECT_NEAR(m.value[0], std::tan(deg_to_rad(5.0)) / 2.0, 1e-9);
+    }
+    if (m.kind == MeasurementKind::kTurn) {
+      EXPECT_EQ(m.value[0], 0.0);
+    }
+  }
 }
 
 }  // namespace

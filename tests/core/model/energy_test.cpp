@@ -192,5 +192,38 @@ TEST(StepEnergy, AirAndTurningAreWhatTheirFormulasSay) {
   EXPECT_NEAR(step_energy(model, step), 0.3 * 1000.0 * 16.0 * 0.2 * 3.0, 1e-9);
 }
 
+TEST(StepEnergy, IsTheWorkAtTheWheelsOverWhatSlipAndDriveLeave) {
+  for_many([](const EnergyModel& model, const DriveStep& step, RandomStream&) {
+    const double work = wheel_work(model, step);
+    const double load = step_energy(model, step) - step_energy(model, [&] {
+                          DriveStep instant = step;
+                          instant.duration_s = 0.0;
+                          return instant;
+                        }());
+    const double drawn = step_energy(model, step) - load;
+    const double traction = traction_ratio(model, step);
+    EXPECT_NEAR(traction * model.total_mass() * kGravity * step.distance_m, work,
+                1e-12 * std::abs(work));
+    const double slip = std::min(0.5, step.soil.slip_per_traction * traction);
+    const double expected = work > 0.0 ? work / (1.0 - slip) / model.drive_efficiency_ratio
+                                       : work * model.recuperation_efficiency_ratio;
+    EXPECT_NEAR(drawn, expected, 1e-9 * (std::abs(expected) + load));
+  });
+  EXPECT_EQ(traction_ratio({}, {}), 0.0);
+}
+
+TEST(StepEnergy, ExcessSlipCostsTheWayTheWheelsRollInVain) {
+  EnergyModel model;
+  model.base_power_w = 0.0;
+  model.drive_efficiency_ratio = 1.0;
+  DriveStep step;
+  step.distance_m = 1.0;
+  const double slip = step.soil.slip_per_traction * traction_ratio(model, step);
+  step.excess_slip_ratio = 0.2;
+  EXPECT_NEAR(step_energy(model, step), wheel_work(model, step) / (1.0 - slip - 0.2), 1e-9);
+  step.excess_slip_ratio = 0.9;
+  EXPECT_NEAR(step_energy(model, step), wheel_work(model, step) / 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace headland
