@@ -29,10 +29,11 @@ constexpr double kSame = 1e-9;  // nearer to the braking curve than this is on i
 void SpeedProfile::add_piece(double begin_s, double end_s, double speed, int segment,
                              std::span<const SpeedZone> zones) {
   for (double s = begin_s; s < end_s;) {
+    while (!zones.empty() && zones.front().end_s <= s) zones = zones.subspan(1);
     double next = end_s;
     double allowed = speed;
     for (const SpeedZone& zone : zones) {
-      if (zone.begin_s >= end_s) break;
+      if (zone.begin_s >= next) break;
       if (zone.begin_s > s) {
         next = std::min(next, zone.begin_s);
       } else if (zone.end_s > s) {

@@ -22,6 +22,8 @@ struct Reference {
   std::vector<double> leg_speed;  ///< [m/s], one per leg number of the path
   /// Where the ground allows less (energy_zones), in the order of their begins.
   std::vector<SpeedZone> zones{};
+  /// Whether the implement is at work, one per leg number; empty: nowhere.
+  std::vector<bool> leg_working{};
 };
 
 enum class TrackStatus {

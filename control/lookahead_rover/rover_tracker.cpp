@@ -16,11 +16,13 @@ bool is_finite(const VehicleState& state) {
 
 }  // namespace
 
-RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config)
-    : vehicle_(vehicle), config_(config), filter_(config.filter) {}
+RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config,
+                           const SpeedLimitConfig& limits)
+    : vehicle_(vehicle), config_(config), limits_(limits), filter_(config.filter) {}
 
 Result<void> RoverTracker::do_start() {
-  profile_.build(reference(), vehicle_.acceleration_mps2);
+  profile_.build(reference(), vehicle_.acceleration_mps2,
+                 speed_zones(reference(), vehicle_, limits_), limits_.brake_ratio);
   filter_.reset();
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kDriving;
   segment_ = 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "control/position_filter.hpp"
+#include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
 #include "control/tracker.hpp"
 #include "core/config/visit.hpp"
@@ -62,7 +63,8 @@ struct RoverTrackerConfig {
 /// where the heading is far off. Deterministic; step() does not allocate.
 class RoverTracker : public Tracker {
  public:
-  RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config);
+  RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config,
+               const SpeedLimitConfig& limits = {});
 
   /// Where the vehicle believes to be [m, map].
   Point2 position_estimate() const { return filter_.position(); }
@@ -88,6 +90,7 @@ class RoverTracker : public Tracker {
 
   Vehicle vehicle_;
   RoverTrackerConfig config_;
+  SpeedLimitConfig limits_;
   PositionFilter filter_;
   SpeedProfile profile_;
   Mode mode_ = Mode::kDone;

@@ -21,12 +21,13 @@ bool is_finite(const VehicleState& state) {
 
 }  // namespace
 
-PurePursuit::PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config)
-    : vehicle_(vehicle), config_(config), filter_(config.filter) {}
+PurePursuit::PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config,
+                         const SpeedLimitConfig& limits)
+    : vehicle_(vehicle), config_(config), limits_(limits), filter_(config.filter) {}
 
 Result<void> PurePursuit::do_start() {
   profile_.build(reference(), vehicle_.acceleration_mps2,
-                 steering_zones(reference(), vehicle_, config_.plan));
+                 speed_zones(reference(), vehicle_, limits_), limits_.brake_ratio);
   plan_.build(reference(), profile_, vehicle_, config_.plan);
   filter_.reset();
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kStanding;

@@ -3,6 +3,7 @@
 
 #include "control/position_filter.hpp"
 #include "control/pure_pursuit/steering_plan.hpp"
+#include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
 #include "control/tracker.hpp"
 #include "core/config/visit.hpp"
@@ -59,7 +60,8 @@ struct PurePursuitConfig {
 /// step() does not allocate.
 class PurePursuit : public Tracker {
  public:
-  PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config);
+  PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config,
+              const SpeedLimitConfig& limits = {});
 
   /// Where the vehicle believes to be [m, map].
   Point2 position_estimate() const { return filter_.position(); }
@@ -89,6 +91,7 @@ class PurePursuit : public Tracker {
 
   Vehicle vehicle_;
   PurePursuitConfig config_;
+  SpeedLimitConfig limits_;
   PositionFilter filter_;
   SpeedProfile profile_;
   SteeringPlan plan_;

@@ -11,11 +11,6 @@ constexpr double kSlowest = 0.1;         // speed that a plan counts with at lea
 constexpr double kSameCurvature = 1e-6;  // [1/m]
 constexpr int kPasses = 6;               // of the solver, each linearised around the last
 
-double leg_speed(const Reference& reference, const PathPiece& piece) {
-  const auto leg = static_cast<std::size_t>(std::max(piece.leg, 0));
-  return leg < reference.leg_speed.size() ? reference.leg_speed[leg] : 0.0;
-}
-
 // The fastest change of the steering angle along a piece [rad/m], where it bends least.
 double steering_per_metre(const PathPiece& piece, double wheelbase) {
   const bool straightens = piece.curvature * piece.end_curvature() < 0.0;
@@ -24,59 +19,7 @@ double steering_per_metre(const PathPiece& piece, double wheelbase) {
   return wheelbase * std::abs(piece.sharpness) / (1.0 + wheelbase * wheelbase * least * least);
 }
 
-struct ZoneMaker {
-  const Reference& reference;
-  const Vehicle& vehicle;
-  const SteeringPlanConfig& config;
-  std::vector<SpeedZone> zones;
-
-  double rate() const { return config.rate_use_ratio * vehicle.steering_rate_radps; }
-
-  void add(double begin_s, double end_s, double speed, double wanted) {
-    const double bounded = std::max(speed, config.least_speed_ratio * wanted);
-    if (bounded < wanted) zones.push_back({begin_s, end_s, bounded});
-  }
-
-  // Curvature that changes by c over the length l, centred at the step, leaves the path by
-  // c l^2 / 24 (twice integrated); the steering takes l = v t for it.
-  void add_step(double s, const PathPiece& before, const PathPiece& piece) {
-    const double from = before.end_curvature();
-    const double change = std::abs(piece.curvature - from);
-    const double wanted = leg_speed(reference, piece);
-    if (!(change > kSameCurvature && wanted > 0.0)) return;
-    const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
-                                 std::atan(vehicle.wheelbase_m * from));
-    const double seconds = turn / rate();
-    const double speed = std::sqrt(24.0 * config.step_error_m / change) / seconds;
-    const double half = 0.5 * std::max(speed, config.least_speed_ratio * wanted) * seconds;
-    add(s - half, s + half, speed, wanted);
-  }
-
-  // On a clothoid the steering keeps up at this speed.
-  void add_ramp(double s, const PathPiece& piece) {
-    const double wanted = leg_speed(reference, piece);
-    if (piece.sharpness == 0.0 || !(wanted > 0.0)) return;
-    add(s, s + piece.length, rate() / steering_per_metre(piece, vehicle.wheelbase_m), wanted);
-  }
-};
-
 }  // namespace
-
-std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
-                                      const SteeringPlanConfig& config) {
-  ZoneMaker maker{reference, vehicle, config, {}};
-  double s = 0.0;
-  const PathPiece* before = nullptr;
-  for (const PathPiece& piece : reference.path.pieces()) {
-    if (before != nullptr && before->gear == piece.gear) maker.add_step(s, *before, piece);
-    maker.add_ramp(s, piece);
-    before = &piece;
-    s += piece.length;
-  }
-  std::stable_sort(maker.zones.begin(), maker.zones.end(),
-                   [](const SpeedZone& a, const SpeedZone& b) { return a.begin_s < b.begin_s; });
-  return std::move(maker.zones);
-}
 
 struct SteeringPlan::Builder {
   SteeringPlan& plan;

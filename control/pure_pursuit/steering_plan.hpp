@@ -21,11 +21,6 @@ struct SteeringPlanConfig {
   double margin_m = 2.0;
   /// Weight of the heading error against the lateral one, as a length [m].
   double heading_weight_m = 0.15;
-  /// At a step of curvature the vehicle slows down so far that a ramp there, split evenly, is off
-  /// the path by no more than this [m] ...
-  double step_error_m = 0.02;
-  /// ... but not below this share of the leg's speed.
-  double least_speed_ratio = 0.2;
 
   template <class V>
   void visit(V& v) {
@@ -36,17 +31,8 @@ struct SteeringPlanConfig {
       "How far from a step of curvature the steering is planned [m]");
     v("heading_weight_m", heading_weight_m, config::Range{0.0, 5.0},
       "Weight of the heading error against the lateral error [m]");
-    v("step_error_m", step_error_m, config::kPositive,
-      "The vehicle slows down at a step of curvature for this error [m]");
-    v("least_speed_ratio", least_speed_ratio, config::Range{0.05, 1.0},
-      "But not below this share of the leg's speed; 1: never slows down");
   }
 };
-
-/// Where the path's curvature steps so far, or a clothoid is so sharp, that the steering is too
-/// slow for the leg's speed. In the order of their begins.
-std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
-                                      const SteeringPlanConfig& config);
 
 /// What the plan wants at a place of the path.
 struct PlannedSteering {

@@ -33,4 +33,11 @@ double step_energy(const EnergyModel& model, const DriveStep& step) {
   return work / (1.0 - slip) / model.drive_efficiency_ratio + load;
 }
 
+double wheel_power(const EnergyModel& model, const DriveStep& step) {
+  DriveStep drive = step;
+  drive.duration_s = 0.0;  // no loads beside the drive
+  const double drawn = step_energy(model, drive);
+  return std::max(0.0, drawn) * model.drive_efficiency_ratio / step.duration_s;
+}
+
 }  // namespace headland

@@ -22,6 +22,7 @@ struct EnergyModel {
   double base_power_w = 300.0;
   double implement_power_w = 0.0;
   double implement_draft_n = 0.0;
+  double drive_power_w = 0.0;
 
   double total_mass() const { return mass_kg + payload_kg; }  ///< [kg]
   /// What a metre of descent gives back at most [J/m]. Times the height it is a potential that
@@ -52,6 +53,8 @@ struct EnergyModel {
       "Drawn by the implement at work: fans, pumps, mowers [W]");
     v("implement_draft_n", implement_draft_n, config::Range{0.0, 1e6},
       "Pull of the implement at work [N]");
+    v("drive_power_w", drive_power_w, config::Range{0.0, 1e7},
+      "Most power at the wheels while a speed is held [W]; 0: unlimited");
   }
 };
 
@@ -76,5 +79,9 @@ struct DriveStep {
 /// implement and loads beside the drive are ours. At constant speed no step is cheaper than
 /// eta_recuperation m g rise, so that drive energies plus that potential are never negative.
 double step_energy(const EnergyModel& model, const DriveStep& step);
+
+/// Power at the wheels [W] over a step of that model: work / (1 - slip) per time; zero where the
+/// wheels brake.
+double wheel_power(const EnergyModel& model, const DriveStep& step);
 
 }  // namespace headland

@@ -75,6 +75,7 @@ struct Vehicle {
   double work_speed_mps = 1.5;
   double transit_speed_mps = 2.0;
   double turn_speed_mps = 1.0;
+  double reverse_speed_mps = 0.0;
   double acceleration_mps2 = 1.0;
   double speed_lag_s = 0.0;
   double speed_dead_time_s = 0.0;
@@ -124,6 +125,8 @@ struct Vehicle {
     v("transit_speed_mps", transit_speed_mps, config::Range{0.05, 20.0},
       "On roads and headlands [m/s]");
     v("turn_speed_mps", turn_speed_mps, config::Range{0.05, 20.0}, "In headland turns [m/s]");
+    v("reverse_speed_mps", reverse_speed_mps, config::Range{0.0, 20.0},
+      "Most in reverse gear [m/s]; 0: as fast as forwards");
     v("acceleration_mps2", acceleration_mps2, config::Range{0.01, 100.0},
       "Speeding up and braking [m/s2]");
     v("speed_lag_s", speed_lag_s, config::Range{0.0, 5.0}, "Time constant of the drive [s]");

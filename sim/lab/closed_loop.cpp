@@ -90,6 +90,7 @@ class Driver {
         plan_(plan),
         visits_(visits),
         farm_(farm),
+        ground_(ground),
         config_(config),
         slots_(slots),
         vehicle_(plan.vehicle, plan.start, plan.start_soc, config.sensors,
@@ -98,7 +99,10 @@ class Driver {
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
     for (const PlanStage& stage : plan.stages) total_length_ += stage.path.length();
-    for (const PlanLeg& leg : plan.legs) leg_speed_.push_back(leg_speed(plan.vehicle, leg.kind));
+    for (const PlanLeg& leg : plan.legs) {
+      leg_speed_.push_back(leg_speed(plan.vehicle, leg.kind));
+      leg_working_.push_back(leg.kind == LegKind::kRow);
+    }
     begin_stage(0.0);
   }
 
@@ -143,7 +147,8 @@ class Driver {
     }
     progress_s_ = 0.0;
     if (stage().path.empty()) return arrive(time);
-    reference_ = Reference{stage().path, leg_speed_};  // the tracker keeps a pointer to it
+    reference_ = Reference{stage().path, leg_speed_, {}, leg_working_};  // the tracker points to it
+    reference_.zones = energy_zones(reference_, plan_.vehicle, config_.control.limits, ground_);
     if (const auto started = tracker_->start(reference_); !started) {
       return give_up(started.error().what, time);
     }
@@ -302,11 +307,13 @@ class Driver {
   const VehiclePlan& plan_;
   const std::vector<Visit>& visits_;
   const Farm& farm_;
+  const Ground& ground_;
   const SimulationConfig& config_;
   ChargerSlots& slots_;
   SimulatedVehicle vehicle_;
   std::unique_ptr<Tracker> tracker_;
   std::vector<double> leg_speed_;
+  std::vector<bool> leg_working_;
   Reference reference_;
   std::vector<double> worst_;  // largest cross-track error of each leg
   Run run_;

@@ -10,10 +10,10 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
   };
   if (vehicle.steering == Steering::kAckermann) {
     inform(control.pure_pursuit.filter);
-    return std::make_unique<PurePursuit>(vehicle, control.pure_pursuit);
+    return std::make_unique<PurePursuit>(vehicle, control.pure_pursuit, control.limits);
   }
   inform(control.rover.filter);
-  return std::make_unique<RoverTracker>(vehicle, control.rover);
+  return std::make_unique<RoverTracker>(vehicle, control.rover, control.limits);
 }
 
 }  // namespace headland

@@ -5,6 +5,7 @@
 
 #include "control/lookahead_rover/rover_tracker.hpp"
 #include "control/pure_pursuit/pure_pursuit.hpp"
+#include "control/speed_limits.hpp"
 #include "sim/simulated_vehicle.hpp"
 
 namespace headland {
@@ -13,11 +14,13 @@ namespace headland {
 struct ControlConfig {
   PurePursuitConfig pure_pursuit;
   RoverTrackerConfig rover;
+  SpeedLimitConfig limits;
 
   template <class V>
   void visit(V& v) {
     v("pure_pursuit", pure_pursuit, "Of Ackermann vehicles");
     v("rover", rover, "Of differential vehicles");
+    v("limits", limits, "What slows the vehicle down below its legs' speeds");
   }
 };
 

@@ -116,7 +116,9 @@ TEST(RoverTracker, FollowsArcsWithinATenthOfAMillimetre) {
   }
   reference.path.append_straight(reference.path.end_pose(), 10.0, 0);
   reference.leg_speed = {1.5};
-  RoverTracker tracker(rover(), {});
+  SpeedLimitConfig limits;
+  limits.max_lateral_mps2 = 1000.0;  // at the leg's speed all along
+  RoverTracker tracker(rover(), {}, limits);
   const Drive result = drive(tracker, reference, {}, 60.0);
   EXPECT_EQ(result.last, TrackStatus::kDone);
   const std::size_t n = result.states.size();
@@ -126,6 +128,28 @@ TEST(RoverTracker, FollowsArcsWithinATenthOfAMillimetre) {
         reference.path.project(result.states[i].pose.position(), s - 0.5, s + 0.5);
     ASSERT_LT(nearest.distance, 5e-4) << s;
   }
+}
+
+TEST(RoverTracker, DrivesItsArcsWithinTheLateralAcceleration) {
+  Reference reference;
+  reference.path.append_straight({0.0, 0.0, 0.0}, 10.0, 0);
+  reference.path.append({reference.path.end_pose(), 0.5, 6.0, Gear::kForward, 0});
+  reference.path.append({reference.path.end_pose(), -0.4, 6.0, Gear::kReverse, 0});
+  reference.leg_speed = {2.0};
+  SpeedLimitConfig limits;
+  limits.max_lateral_mps2 = 0.6;
+  RoverTracker tracker(rover(), {}, limits);
+  const Drive result = drive(tracker, reference, {}, 60.0);
+  EXPECT_EQ(result.last, TrackStatus::kDone);
+  EXPECT_LT(result.max_error, 5e-3);
+  double fastest = 0.0;
+  for (std::size_t i = 0; i < result.states.size(); ++i) {
+    fastest = std::max(fastest, result.states[i].speed);
+    if (result.outputs[i].s < 10.05) continue;
+    const VehicleState& state = result.states[i];
+    ASSERT_LT(std::abs(state.speed * state.yaw_rate), 0.6 * 1.05) << result.outputs[i].s;
+  }
+  EXPECT_NEAR(fastest, 2.0, 1e-9);
 }
 
 TEST(RoverTracker, StopsAndChangesGearAtEveryCusp) {

@@ -66,9 +66,9 @@ TEST(PurePursuitOnClothoids, SlowsDownForARampThatIsTooSharpForTheSteering) {
 
 TEST(PurePursuitOnClothoids, PlansARampThatIsAlmostAStepAsAStep) {
   const Vehicle vehicle = study_vehicle(40.0, 0.6);
-  PurePursuitConfig config;
-  config.plan.least_speed_ratio = 1.0;  // never slows down
-  const Drive d = drive(vehicle, config, smooth_turns(0.25, 0.2, 1.0), {}, exactly);
+  SpeedLimitConfig limits;
+  limits.least_speed_ratio = 1.0;  // never slows down
+  const Drive d = drive(vehicle, {}, smooth_turns(0.25, 0.2, 1.0), {}, exactly, 0.01, limits);
   EXPECT_EQ(d.last, TrackStatus::kDone);
   EXPECT_LT(d.all.most, 0.02);
 }

@@ -78,9 +78,9 @@ using Measure = std::function<VehicleState(const VehicleState&)>;
 /// plant's pose, near the progress, whatever was measured.
 inline Drive drive(const Vehicle& vehicle, const PurePursuitConfig& config,
                    const Reference& reference, VehicleState state, const Measure& measure,
-                   double dt = 0.01) {
+                   double dt = 0.01, const SpeedLimitConfig& limits = {}) {
   const Path& path = reference.path;
-  PurePursuit tracker(vehicle, config);
+  PurePursuit tracker(vehicle, config, limits);
   tracker.start(reference);
   Drive result;
   double turn_distance = 0.0;

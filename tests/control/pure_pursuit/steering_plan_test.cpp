@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "control/speed_limits.hpp"
 #include "tests/control/pure_pursuit/drive.hpp"
 
 namespace headland {
@@ -25,8 +26,7 @@ struct Planned {
 
 Planned make(const Reference& reference, const Vehicle& vehicle, const SteeringPlanConfig& config) {
   Planned made;
-  made.speeds.build(reference, vehicle.acceleration_mps2,
-                    steering_zones(reference, vehicle, config));
+  made.speeds.build(reference, vehicle.acceleration_mps2, speed_zones(reference, vehicle, {}));
   made.plan.build(reference, made.speeds, vehicle, config);
   return made;
 }
@@ -95,22 +95,6 @@ TEST(SteeringPlan, BeginsToTurnBeforeTheStepAndEndsBehindIt) {
   EXPECT_GT(made.plan.at(reference.path, 9.9, 0).curvature, 0.05);
   EXPECT_LT(made.plan.at(reference.path, 10.1, 0).curvature, 0.35);
   EXPECT_NEAR(made.plan.at(reference.path, 10.0, 0).curvature, 0.17, 0.1);
-}
-
-TEST(SteeringZones, SlowDownOnlyWhereTheSteeringIsTooSlowForTheError) {
-  const Reference reference = with_step(0.4);
-  EXPECT_TRUE(steering_zones(reference, study_vehicle(60.0, 2.0), {}).empty());
-  SteeringPlanConfig config;
-  config.step_error_m = 0.005;
-  config.least_speed_ratio = 0.1;
-  const Vehicle slow = study_vehicle(60.0, 0.5);
-  const auto zones = steering_zones(reference, slow, config);
-  ASSERT_EQ(zones.size(), 1U);
-  // c l^2 / 24 over the zone is the error asked for, and the wheels just make it.
-  const double length = zones[0].end_s - zones[0].begin_s;
-  EXPECT_NEAR(0.4 * length * length / 24.0, 0.005, 1e-9);
-  EXPECT_NEAR(length / zones[0].speed, std::atan(2.5 * 0.4) / (0.5 * config.rate_use_ratio), 1e-9);
-  EXPECT_NEAR(0.5 * (zones[0].begin_s + zones[0].end_s), 10.0, 1e-9);
 }
 
 }  // namespace
