@@ -13,7 +13,7 @@ constexpr double kSameCurvature = 1e-6;  // [1/m]
 constexpr double kUnlimited = 1000.0;    // what the configuration takes for no limit
 constexpr double kCut = 0.25;            // zones along clothoids are no longer [m] ...
 constexpr double kLeastCuts = 8.0;       // ... and no fewer
-constexpr double kTurnCut = 0.1;         // on slopes they turn by no more than this [rad]
+constexpr double kTurnCut = 0.04;        // on slopes they turn by no more than this [rad]
 constexpr double kCrawl = 1e-3;          // no limit on power asks for less [m/s]
 
 // The speed that legs and gear allow on a piece [m/s].

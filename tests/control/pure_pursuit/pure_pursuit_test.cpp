@@ -274,5 +274,24 @@ TEST(PurePursuit, GivesTheSameDriveTwice) {
   EXPECT_EQ(a.states.back().pose.yaw, b.states.back().pose.yaw);
 }
 
+TEST(PurePursuit, DrivesItsTurnsWithinTheLateralAcceleration) {
+  const Vehicle vehicle = study_vehicle(55.0, 1.0);
+  SpeedLimitConfig limits;
+  limits.max_lateral_mps2 = 0.3;
+  const Reference reference = rows({1, 3, 2}, 2.0, Turn::kDubins);
+  const Drive d = drive(
+      vehicle, {}, reference, {reference.path.start_pose()},
+      [](const VehicleState& s) { return s; }, 0.01, limits);
+  EXPECT_EQ(d.last, TrackStatus::kDone);
+  double highest = 0.0;
+  for (const VehicleState& state : d.states) {
+    const double curvature = std::abs(std::tan(state.steering)) / vehicle.wheelbase_m;
+    highest = std::max(highest, state.speed * state.speed * curvature);
+  }
+  // The steering plan bends a little more than the path behind a step.
+  EXPECT_LT(highest, 0.3 * 1.2);
+  EXPECT_GT(highest, 0.3 * 0.9);
+}
+
 }  // namespace
 }  // namespace headland

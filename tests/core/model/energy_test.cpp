@@ -225,5 +225,16 @@ TEST(StepEnergy, ExcessSlipCostsTheWayTheWheelsRollInVain) {
   EXPECT_NEAR(step_energy(model, step), wheel_work(model, step) / 0.5, 1e-9);
 }
 
+TEST(WheelPower, IsTheDrivesShareOfTheEnergyPerTimeAndZeroWhereItBrakes) {
+  for_many([](const EnergyModel& model, const DriveStep& step, RandomStream&) {
+    EnergyModel bare = model;
+    bare.base_power_w = 0.0;
+    bare.implement_power_w = 0.0;
+    const double drawn = step_energy(bare, step);
+    const double expected = std::max(0.0, drawn) * model.drive_efficiency_ratio / step.duration_s;
+    EXPECT_NEAR(wheel_power(model, step), expected, 1e-9 * (1.0 + expected));
+  });
+}
+
 }  // namespace
 }  // namespace headland

@@ -63,6 +63,24 @@ TEST(ClosedLoop, DrivesAllRowsCloseToThePathAtTheEnergyPlanned) {
   EXPECT_NEAR(run.metrics.energy_j, planned, 0.05 * planned);
 }
 
+TEST(ClosedLoop, KeepsToThePowerOfTheDrive) {
+  VehiclePlan plan = two_rows();
+  const auto strong = drive_plan(plan);
+  plan.vehicle.energy.drive_power_w = 150.0;
+  const auto weak = drive_plan(plan);
+  EXPECT_TRUE(weak.metrics.completed) << weak.metrics.reason;
+  // On firm ground a constant force: the speed at which it takes that power.
+  DriveStep step;
+  step.distance_m = step.speed_mps = step.speed_before_mps = step.duration_s = 1.0;
+  step.working = true;
+  const double most = 150.0 / wheel_power(plan.vehicle.energy, step);
+  ASSERT_LT(most, plan.vehicle.work_speed_mps);
+  double fastest = 0.0;
+  for (const TraceRow& row : weak.trace) fastest = std::max(fastest, row.speed_mps);
+  EXPECT_NEAR(fastest, most, 1e-6);
+  EXPECT_GT(weak.metrics.duration_s, strong.metrics.duration_s);
+}
+
 TEST(ClosedLoop, FallingBelowTheReserveIsNotASuccess) {
   const auto run = drive_plan(two_rows(0.11));
   EXPECT_FALSE(run.metrics.completed);
