@@ -76,14 +76,14 @@ std::optional<Error> HorizonConfig::check() const {
 }
 
 HorizonTracker::HorizonTracker(const Vehicle& vehicle, const HorizonConfig& config, double cycle,
-                               const Clock* clock)
+                               const Clock* clock, std::unique_ptr<HorizonSolver> solver)
     : vehicle_(vehicle),
       config_(config),
       cycle_(cycle),
       clock_(clock),
       delay_(vehicle, cycle),
       problem_(MotionModel(vehicle), config.intervals_count, config.interval_s),
-      solver_(make_solver(config)),
+      solver_(solver ? std::move(solver) : make_solver(config)),
       plan_(config.intervals_count),
       shifted_(config.intervals_count) {
   problem_.weights = config.weights;
@@ -292,7 +292,7 @@ Command HorizonTracker::first_command(const VehicleState& then, double dt) const
   if (ackermann()) {
     command.steering = std::clamp(told, turn_.low, turn_.high);
   } else {
-    command.yaw_rate = told;
+    command.yaw_rate = std::clamp(told, turn_.low, turn_.high);
   }
   return command;
 }
@@ -328,7 +328,9 @@ TrackOutput HorizonTracker::drive(const VehicleState& then, double dt) {
 }
 
 TrackOutput HorizonTracker::do_step(const VehicleEstimate& estimate, double dt) {
-  if (!is_finite(estimate.state) || !(dt > 0.0)) return stop(TrackStatus::kBadState);
+  if (!is_finite(estimate.state) || !(dt > 0.0 && std::isfinite(dt))) {
+    return stop(TrackStatus::kBadState);
+  }
   problem_.slip = plausible(estimate.slip);
   const VehicleState then = predict(estimate.state);
   if (mode_ == Mode::kDone) return stop(TrackStatus::kDone);
