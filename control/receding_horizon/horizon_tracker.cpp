@@ -14,6 +14,7 @@ namespace headland {
 namespace {
 
 constexpr double kStill = 0.02;          // slower counts as standing, estimated as it is [m/s]
+constexpr double kSettling = 4.0;        // lags of the drive until it stands, once it is that slow
 constexpr double kTangentFrom = 0.05;    // of a segment's end, where its tangent measures [m]
 constexpr double kBeforeEnd = 1e-9;      // Path::at() at a segment's end is already the next one
 constexpr double kPastCusp = 2e-6;       // [m]
@@ -72,7 +73,8 @@ std::optional<Error> HorizonConfig::check() const {
 }
 
 HorizonTracker::HorizonTracker(const Vehicle& vehicle, const HorizonConfig& config, double cycle,
-                               const Clock* clock, const SpeedLimitConfig& limits)
+                               const Clock* clock, const SpeedLimitConfig& limits,
+                               std::unique_ptr<HorizonSolver> solver)
     : vehicle_(vehicle),
       config_(config),
       limits_(limits),
@@ -80,7 +82,7 @@ HorizonTracker::HorizonTracker(const Vehicle& vehicle, const HorizonConfig& conf
       clock_(clock),
       delay_(vehicle, cycle),
       problem_(MotionModel(vehicle), config.intervals_count, config.interval_s),
-      solver_(make_solver(config)),
+      solver_(solver ? std::move(solver) : make_solver(config)),
       plan_(config.intervals_count),
       shifted_(config.intervals_count) {
   problem_.weights = config.weights;
@@ -156,7 +158,7 @@ TrackOutput HorizonTracker::arrive(const VehicleState& then) {
   s_ = segment().begin_s;
   mode_ = Mode::kStanding;
   changing_gear_ = true;
-  gear_left_ = vehicle_.gear_change_s;
+  gear_left_ = std::max(vehicle_.gear_change_s, kSettling * vehicle_.speed_lag_s);
   steering_left_ = longest_steering(vehicle_);
   return stop(TrackStatus::kGearChange);
 }
@@ -291,7 +293,7 @@ Command HorizonTracker::first_command(const VehicleState& then, double dt) const
   if (ackermann()) {
     command.steering = std::clamp(told, turn_.low, turn_.high);
   } else {
-    command.yaw_rate = told;
+    command.yaw_rate = std::clamp(told, turn_.low, turn_.high);
   }
   return command;
 }
@@ -328,7 +330,9 @@ TrackOutput HorizonTracker::drive(const VehicleState& then, double dt) {
 }
 
 TrackOutput HorizonTracker::do_step(const VehicleEstimate& estimate, double dt) {
-  if (!is_finite(estimate.state) || !(dt > 0.0)) return stop(TrackStatus::kBadState);
+  if (!is_finite(estimate.state) || !(dt > 0.0 && std::isfinite(dt))) {
+    return stop(TrackStatus::kBadState);
+  }
   problem_.slip = plausible(estimate.slip);
   const VehicleState then = predict(estimate.state);
   if (mode_ == Mode::kDone) return stop(TrackStatus::kDone);

@@ -91,9 +91,11 @@ struct HorizonCounts {
 /// step does not allocate with the real-time iteration, and never throws.
 class HorizonTracker : public Tracker {
  public:
-  /// `cycle` [s] is the time between steps. Without a `clock` there are no deadlines.
+  /// `cycle` [s] is the time between steps. Without a `clock` there are no deadlines. A `solver`
+  /// for `intervals_count` intervals takes the place of the configured one.
   HorizonTracker(const Vehicle& vehicle, const HorizonConfig& config, double cycle,
-                 const Clock* clock = nullptr, const SpeedLimitConfig& limits = {});
+                 const Clock* clock = nullptr, const SpeedLimitConfig& limits = {},
+                 std::unique_ptr<HorizonSolver> solver = nullptr);
 
   const HorizonCounts& counts() const { return counts_; }
   /// The plan that drives now, and the problem it solves.

@@ -30,7 +30,7 @@ struct HorizonDrive {
 struct HorizonWorld {
   std::function<Slip(double s)> slip = [](double) { return Slip{}; };
   std::function<VehicleEstimate(const VehicleState& truth, const Slip& slip)> estimate =
-      [](const VehicleState& truth, const Slip& now) { return VehicleEstimate(truth, now); };
+      [](const VehicleState& truth, const Slip& known) { return VehicleEstimate(truth, known); };
   double ignore_before = 0.0;  ///< of the path, in the figures [m]
 };
 
