@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -9,6 +10,9 @@
 #include "control/estimation/estimator.hpp"
 
 namespace headland {
+namespace control::internal {
+class EstimationWindow;
+}
 
 /// How the noise over the window is blocked: held constant over blocks of intervals (Wallace et al.
 /// 2018, 2019; seed 003's [2]-[4]).
@@ -58,6 +62,7 @@ class HorizonEstimator : public Estimator {
   /// `cycle` [s]: of the updates.
   HorizonEstimator(const Vehicle& vehicle, const EstimationConfig& model,
                    const HorizonEstimatorConfig& config, double cycle);
+  ~HorizonEstimator() override;
 
   void reset(const VehicleState& start, double now) override;
   Estimate update(std::span<const Measurement> measured, const Command& last, double now) override;
@@ -66,45 +71,10 @@ class HorizonEstimator : public Estimator {
   const std::vector<int>& blocks() const { return block_lengths_; }
 
  private:
-  // One noise block: from grid point `first` to `last`.
-  struct Block {
-    int first = 0;
-    int last = 0;
-    Eigen::Vector3d trust = Eigen::Vector3d::Ones();  // weight of the slip's change in it
-    EstimateMatrix own;                               // Hessian of the state at its begin
-    EstimateMatrix coupling;                          // with the state at its end
-    EstimateVector slope;
-    EstimateVector step;
-  };
-  // Along a block: the state, and the pose's derivatives to pose and drive at the block's begin and
-  // to the drive at its end.
-  struct Chain;
-
-  int length() const { return static_cast<int>((log_.now() - log_.base()) / stride_); }
-  EstimateVector& grid(int j) { return grid_[static_cast<std::size_t>(j)]; }
-  Block& block(int b) { return blocks_[static_cast<std::size_t>(b)]; }
-  // The drive at a fraction of interval j, and its derivative (diagonal) to that at the block's
-  // begin; that to the drive at its end is the share of the block that is behind.
-  struct Within {
-    Drive<double> drive;
-    Drive<double> by_begin;
-    double by_end = 0.0;
-  };
-  Within within(const Block& block, int j, double fraction) const;
   void restart();
   void advance_base();
-  void lay_blocks();
-  void guess_grid();
-  void guess_answers();
-  void linearise();
-  void add_block(Block& begin, Block& end);
-  void add_measurements(Block& from, Block& to, int j, Chain& chain);
-  void add_transition(Block& begin, Block& end, const Chain& chain);
-  void add_bounds(Block& at);
-  bool solve_steps();
-  void take_steps();
-  void weigh_changes();
-  void doubt_the_newest();
+  bool solve();
+  EstimateVector coasted(EstimateVector state, long from, long to) const;
 
   EstimationModel model_;
   HorizonEstimatorConfig config_;
@@ -114,12 +84,7 @@ class HorizonEstimator : public Estimator {
   std::vector<int> block_lengths_;
   KalmanFilter prior_;  // at the window's begin
   Eigen::Vector3d prior_inflation_ = Eigen::Vector3d::Ones();
-  std::vector<EstimateVector> grid_;     // trajectory at the intervals' borders
-  std::vector<ActuatorAnswer> answers_;  // to the commands, from the block's begin to here
-  std::vector<Block> blocks_;            // the last one is the window's end
-  int block_count_ = 0;                  // without that
-  int grid_length_ = 0;
-  std::span<const Measurement>::iterator next_measurement_;
+  std::unique_ptr<control::internal::EstimationWindow> window_;
   long solved_at_ = 0;  // [cycles]
   EstimateVector newest_ = EstimateVector::Zero();
   EstimateVector variance_ = EstimateVector::Zero();
