@@ -17,6 +17,7 @@ Json statistic_json(const Statistic& statistic) {
   add("median", statistic.median);
   add("std", statistic.std);
   add("p95", statistic.p95);
+  add("p99", statistic.p99);
   add("ci_low", statistic.ci_low);
   add("ci_high", statistic.ci_high);
   return json;

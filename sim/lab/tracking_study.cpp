@@ -162,6 +162,16 @@ class Study {
       for (const TrackingDrive& run : runs) sample.push_back(value(run));
       cell.metrics.emplace_back(metric, summarize(std::move(sample)));
     };
+    // Of all ticks of all runs.
+    const auto pool = [&](const char* metric, const std::vector<double> TrackingDrive::*ticks) {
+      std::vector<double> all;
+      for (const TrackingDrive& run : runs) {
+        all.insert(all.end(), (run.*ticks).begin(), (run.*ticks).end());
+      }
+      Statistic statistic = summarize(all);
+      statistic.p99 = quantile(std::move(all), 0.99);
+      cell.metrics.emplace_back(metric, statistic);
+    };
     const bool seed = cells_[c].tracker == StudyTracker::kSeedPurePursuit;
     const bool estimated = cells_[c].estimator != StudyEstimator::kNone;
     add("overall_rms_m", [](const TrackingDrive& d) { return d.tracking.overall_rms_m; });
@@ -181,10 +191,10 @@ class Study {
       add("offset_rmse_deg", [](const TrackingDrive& d) { return d.offset_rmse_deg; });
       add("position_rmse_m", [](const TrackingDrive& d) { return d.position_rmse_m; });
       add("speed_rmse_mps", [](const TrackingDrive& d) { return d.speed_rmse_mps; });
-      add("estimate_ms", [](const TrackingDrive& d) { return quantile(d.estimate_ms, 0.5); });
+      pool("estimate_ms", &TrackingDrive::estimate_ms);
       add("estimate_p99_ms", [](const TrackingDrive& d) { return quantile(d.estimate_ms, 0.99); });
     }
-    add("solve_ms", [](const TrackingDrive& d) { return quantile(d.solve_ms, 0.5); });
+    pool("solve_ms", &TrackingDrive::solve_ms);
     add("solve_p99_ms", [](const TrackingDrive& d) { return quantile(d.solve_ms, 0.99); });
     add("duration_s", [](const TrackingDrive& d) { return d.duration_s; });
     add("completed_ratio", [](const TrackingDrive& d) { return d.completed ? 1.0 : 0.0; });

@@ -72,9 +72,10 @@ struct TrackingStudyConfig {
 
 /// A cell `<tracker>/<estimator>/<slip>/<speed>` each: overall_rms_m, row_rms_m, turn_rms_m, max_m,
 /// fishtail_rms_m, cusp_max_m, recovery_s, loss_rmse_ratio, side_rmse_deg, offset_rmse_deg,
-/// position_rmse_m, speed_rmse_mps, solve_ms, solve_p99_ms, estimate_ms, estimate_p99_ms,
-/// duration_s, completed_ratio, wrong_gear_count. Times are processor times, all else is
-/// deterministic, whatever `jobs` is, the number of drives at once.
+/// position_rmse_m, speed_rmse_mps, solve_ms and estimate_ms (of all ticks, with p99), solve_p99_ms
+/// and estimate_p99_ms (mean of the runs' p99), duration_s, completed_ratio, wrong_gear_count.
+/// Times are processor times, all else is deterministic, whatever `jobs` is, the number of drives
+/// at once.
 Result<StudyResult> run_tracking_study(const TrackingStudyConfig& config, int jobs = 1);
 
 }  // namespace headland
