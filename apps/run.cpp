@@ -13,6 +13,7 @@
 #include "apps/recording.hpp"
 #include "apps/report_content.hpp"
 #include "apps/run_output.hpp"
+#include "core/base/clock.hpp"
 
 namespace headland::apps {
 namespace {
@@ -33,8 +34,9 @@ FleetRun drive(const PlannedMission& planned, double realtime) {
     if (ahead > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(ahead));
   };
   const Mission& mission = planned.mission;
+  const SteadyClock clock;  // for deadlines, if any are set
   return drive_fleet(planned.plan.vehicles, mission.visits, mission.farm, mission.ground,
-                     planned.config.simulation, progress);
+                     planned.config.simulation, progress, &clock);
 }
 
 }  // namespace

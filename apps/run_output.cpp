@@ -50,6 +50,7 @@ std::string metrics_json(const FleetRun& run, const std::vector<VehiclePlan>& pl
       {"min_soc", m.min_soc},
       {"reserve_kept", m.reserve_kept},
       {"wrong_gear_count", m.wrong_gear_count},
+      {"stale_plan_count", m.stale_plan_count},
       {"real_time_factor", real_time_factor},
       // Zero by construction: there are no agents yet, and rows and turns are checked beforehand.
       {"collisions", 0},

@@ -41,7 +41,8 @@ constexpr bool failed(TrackStatus status) { return status >= TrackStatus::kPathL
 struct TrackOutput {
   Command command;
   TrackStatus status = TrackStatus::kTracking;
-  double s = 0.0;  ///< progress along the reference [m]
+  double s = 0.0;      ///< progress along the reference [m]
+  bool stale = false;  ///< the command is an older plan's: a new one came too late, or failed
 };
 
 /// Turns a reference and an estimated state into commands, tick by tick. Ticks do not allocate and

@@ -9,11 +9,6 @@ namespace {
 
 constexpr double kStanding = 1e-3;  // slower counts as standing [m/s]
 
-bool is_finite(const VehicleState& state) {
-  return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
-         std::isfinite(state.pose.yaw) && std::isfinite(state.speed);
-}
-
 }  // namespace
 
 RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config,

@@ -10,17 +10,6 @@ namespace headland {
 namespace {
 
 constexpr double kStill = 1e-3;  // slower counts as standing [m/s]
-// Nearer to the end of a segment than this, its tangent there measures what remains [m].
-constexpr double kTangentFrom = 0.05;
-// Path::at() at a segment's end is already the next segment; this much before it is not [m].
-constexpr double kBeforeEnd = 1e-9;
-constexpr double kPastCusp = 2e-6;  // and this much behind it is [m]
-
-bool is_finite(const VehicleState& state) {
-  return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
-         std::isfinite(state.pose.yaw) && std::isfinite(state.speed) &&
-         std::isfinite(state.steering);
-}
 
 }  // namespace
 
@@ -34,8 +23,7 @@ Result<void> PurePursuit::do_start() {
   plan_.build(reference(), profile_, vehicle_, config_.plan);
   filter_.reset();
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kStanding;
-  segment_ = 0;
-  s_ = 0.0;
+  progress_.start(reference().path);
   gear_left_ = 0.0;
   changing_gear_ = false;
   has_last_ = false;
@@ -51,20 +39,11 @@ Point2 PurePursuit::odometry(const VehicleState& measured, double dt) const {
   return distance * Point2(std::cos(yaw), std::sin(yaw));
 }
 
-// To the end of the segment [m]: near it, the signed distance along its tangent, which goes through
-// zero however far the vehicle passes beside the end.
-double PurePursuit::remaining(const Pose2& pose, double s) const {
-  const PathSegment& now = segment();
-  if (s < now.end_s - kTangentFrom) return now.end_s - s;
-  const PathSample end = reference().path.at(now.end_s - kBeforeEnd);
-  return sign(now.gear) * (end.pose.position() - pose.position()).dot(end.pose.heading());
-}
-
 // Where the plan has the vehicle for progress s [m]; past the segment's end straight on.
 Pose2 PurePursuit::planned_pose(double s) const {
-  const PathSegment& now = segment();
-  const double inside = std::clamp(s, now.begin_s, now.end_s - kBeforeEnd);
-  const PlannedSteering planned = plan_.at(reference().path, inside, segment_);
+  const PathSegment& now = progress_.segment();
+  const double inside = std::clamp(s, now.begin_s, now.end_s - PathProgress::kBeforeEnd);
+  const PlannedSteering planned = plan_.at(reference().path, inside, progress_.number());
   Pose2 pose = reference().path.at(inside).pose;
   const Point2 place = pose.position() + planned.lateral * pose.left();
   pose = {place.x(), place.y(), pose.yaw + planned.heading};
@@ -94,12 +73,12 @@ double PurePursuit::command_angle(double wanted, double actual, double dt) const
 // The angle that the plan wants at the progress [rad].
 double PurePursuit::planned_angle() const {
   const double limit = vehicle_.max_steering_rad();
-  const double curvature = plan_.at(reference().path, s_, segment_).curvature;
+  const double curvature = plan_.at(reference().path, progress_.s(), progress_.number()).curvature;
   return std::clamp(std::atan(vehicle_.wheelbase_m * curvature), -limit, limit);
 }
 
 TrackOutput PurePursuit::stop(const VehicleState& measured, TrackStatus status) const {
-  return {{0.0, measured.steering, 0.0}, status, s_};
+  return {{0.0, measured.steering, 0.0}, status, progress_.s()};
 }
 
 // Stands until the vehicle is still, the gear is in and the wheels have turned.
@@ -112,17 +91,16 @@ TrackOutput PurePursuit::stand(const VehicleState& measured, double dt) {
   const TrackStatus status = changing_gear_ ? TrackStatus::kGearChange : TrackStatus::kTracking;
   // Still rolling: the wheels stay as they are.
   const double angle = still ? planned_angle() : measured.steering;
-  return {{0.0, command_angle(angle, measured.steering, dt), 0.0}, status, s_};
+  return {{0.0, command_angle(angle, measured.steering, dt), 0.0}, status, progress_.s()};
 }
 
 TrackOutput PurePursuit::arrive(const VehicleState& measured) {
-  if (segment_ + 1 == static_cast<int>(reference().path.segments().size())) {
+  if (progress_.on_last()) {
     const bool still = std::abs(measured.speed) <= kStill;
     mode_ = still ? Mode::kDone : Mode::kStopping;
     return stop(measured, still ? TrackStatus::kDone : TrackStatus::kTracking);
   }
-  ++segment_;
-  s_ = segment().begin_s;
+  progress_.next_segment();
   mode_ = Mode::kStanding;
   changing_gear_ = true;
   gear_left_ = vehicle_.gear_change_s;
@@ -131,22 +109,18 @@ TrackOutput PurePursuit::arrive(const VehicleState& measured) {
 }
 
 TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, double dt) {
-  const PathSegment& now = segment();
+  const PathSegment& now = progress_.segment();
   const Path& path = reference().path;
-  const auto inside = [&now](double s) { return std::clamp(s, now.begin_s, now.end_s); };
-  const Projection nearest =
-      path.project(pose.position(), inside(s_ - config_.search_m), inside(s_ + config_.search_m));
+  const Projection nearest = progress_.nearest(pose.position(), config_.search_m);
   if (!(nearest.distance <= config_.lost_beyond_m)) return stop(measured, TrackStatus::kPathLost);
-  const double left = remaining(pose, nearest.s);
+  const double left = progress_.remaining(pose, nearest.s);
   if (left <= config_.stop_tolerance_m) return arrive(measured);
-  // On a cusp, of the two segments that meet there, this one.
-  const double least = std::max(s_, now.begin_s + kPastCusp);
-  s_ = std::clamp(nearest.s, least, std::max(least, now.end_s - kBeforeEnd));
+  progress_.move_to(nearest.s);
 
   const double most = vehicle_.acceleration_mps2 * dt;
   const double direction = sign(now.gear);
   const double v = std::max(0.0, direction * measured.speed);
-  const double wanted = profile_.limit(now.end_s - left, segment_, dt);
+  const double wanted = profile_.limit(now.end_s - left, progress_.number(), dt);
   const double speed = std::max(0.0, std::clamp(wanted, v - most, v + most));
 
   // Where the vehicle will be in the middle of the cycle that this command acts on.
@@ -159,18 +133,19 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
   const double lookahead = config_.lookahead_m + seconds * v;
   const Point2 target = planned_pose(s + lookahead).position();
   const double feedback = pursuit(then, target) - pursuit(planned_pose(s), target);
-  const double curvature = plan_.at(path, inside(s), segment_).curvature + feedback;
+  const double curvature =
+      plan_.at(path, progress_.inside(s), progress_.number()).curvature + feedback;
   const double angle = std::atan(vehicle_.wheelbase_m * curvature);
   const double told = command_through_lag(speed, v, vehicle_.speed_lag_s, dt);
   return {{direction * told, command_angle(angle, measured.steering, dt), 0.0},
           TrackStatus::kTracking,
-          s_};
+          progress_.s()};
 }
 
 TrackOutput PurePursuit::do_step(const VehicleEstimate& estimate, double dt) {
   const VehicleState& measured = estimate.state;
   // And keep it from the filter.
-  if (!is_finite(measured) || !(dt > 0.0)) return {{}, TrackStatus::kBadState, s_};
+  if (!is_finite(measured) || !(dt > 0.0)) return {{}, TrackStatus::kBadState, progress_.s()};
   filter_.update(odometry(measured, dt), measured.pose.position());
   last_ = measured;
   has_last_ = true;

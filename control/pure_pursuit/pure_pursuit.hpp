@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "control/path_progress.hpp"
 #include "control/position_filter.hpp"
 #include "control/pure_pursuit/steering_plan.hpp"
 #include "control/speed_limits.hpp"
@@ -74,11 +75,7 @@ class PurePursuit : public Tracker {
   Result<void> do_start() override;
   TrackOutput do_step(const VehicleEstimate& estimate, double dt) override;
 
-  const PathSegment& segment() const {
-    return reference().path.segments()[static_cast<std::size_t>(segment_)];
-  }
   Point2 odometry(const VehicleState& measured, double dt) const;
-  double remaining(const Pose2& pose, double s) const;
   Pose2 planned_pose(double s) const;
   double pursuit(const Pose2& pose, const Point2& target) const;
   double command_angle(double wanted, double actual, double dt) const;
@@ -95,8 +92,7 @@ class PurePursuit : public Tracker {
   SpeedProfile profile_;
   SteeringPlan plan_;
   Mode mode_ = Mode::kDone;
-  int segment_ = 0;
-  double s_ = 0.0;              // progress [m]
+  PathProgress progress_;
   double gear_left_ = 0.0;      // standing time of the gear change under way [s]
   double steering_left_ = 0.0;  // longest time to wait for the wheels [s]
   bool changing_gear_ = false;

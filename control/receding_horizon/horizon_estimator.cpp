@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "control/estimation/ekf_estimator.hpp"
 #include "control/receding_horizon/internal/estimation_window.hpp"

@@ -15,19 +15,10 @@ namespace {
 
 constexpr double kStill = 0.02;          // slower counts as standing, estimated as it is [m/s]
 constexpr double kSettling = 4.0;        // lags of the drive until it stands, once it is that slow
-constexpr double kTangentFrom = 0.05;    // of a segment's end, where its tangent measures [m]
-constexpr double kBeforeEnd = 1e-9;      // Path::at() at a segment's end is already the next one
-constexpr double kPastCusp = 2e-6;       // [m]
 constexpr double kSpeedRoom = 1.1;       // of the reference's speed that a plan may use
 constexpr double kLeastSpeedRoom = 0.2;  // and at least [m/s]
 constexpr double kBrakeShare = 0.9;      // of the braking that plans use; feedback has the rest
 constexpr int kFirstSolves = 5;          // without a plan to start from
-
-bool is_finite(const VehicleState& state) {
-  return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
-         std::isfinite(state.pose.yaw) && std::isfinite(state.speed) &&
-         std::isfinite(state.steering) && std::isfinite(state.yaw_rate);
-}
 
 // What an estimator may say without being believed more than this.
 Slip plausible(const Slip& slip) {
@@ -111,8 +102,7 @@ Result<void> HorizonTracker::do_start() {
                  speed_zones(reference(), vehicle_, limits_),
                  kBrakeShare * limits_.brake_ratio * braking);
   mode_ = reference().path.empty() ? Mode::kDone : Mode::kStanding;
-  segment_ = 0;
-  s_ = 0.0;
+  progress_.start(reference().path);
   has_plan_ = false;
   stale_ = 0;
   changing_gear_ = false;
@@ -130,16 +120,9 @@ VehicleState HorizonTracker::predict(const VehicleState& now) const {
   return then;
 }
 
-double HorizonTracker::remaining(const Pose2& pose, double s) const {
-  const PathSegment& now = segment();
-  if (s < now.end_s - kTangentFrom) return now.end_s - s;
-  const PathSample end = reference().path.at(now.end_s - kBeforeEnd);
-  return sign(now.gear) * (end.pose.position() - pose.position()).dot(end.pose.heading());
-}
-
 TrackOutput HorizonTracker::give(const Command& command, TrackStatus status) {
   delay_.push(command);
-  return {command, status, s_};
+  return {command, status, progress_.s(), stale_ > 0 && has_plan_};
 }
 
 TrackOutput HorizonTracker::stop(TrackStatus status) {
@@ -149,13 +132,12 @@ TrackOutput HorizonTracker::stop(TrackStatus status) {
 
 TrackOutput HorizonTracker::arrive(const VehicleState& then) {
   has_plan_ = false;
-  if (segment_ + 1 == static_cast<int>(reference().path.segments().size())) {
+  if (progress_.on_last()) {
     const bool still = std::abs(then.speed) <= kStill;
     mode_ = still ? Mode::kDone : Mode::kStopping;
     return stop(still ? TrackStatus::kDone : TrackStatus::kTracking);
   }
-  ++segment_;
-  s_ = segment().begin_s;
+  progress_.next_segment();
   mode_ = Mode::kStanding;
   changing_gear_ = true;
   gear_left_ = std::max(vehicle_.gear_change_s, kSettling * vehicle_.speed_lag_s);
@@ -166,7 +148,7 @@ TrackOutput HorizonTracker::arrive(const VehicleState& then) {
 // The steering angle with which the vehicle drives off from a standstill [rad].
 double HorizonTracker::standing_angle() const {
   const double angle =
-      problem_.model.turn_for(reference().path.at(s_).curvature, 0.0, problem_.slip);
+      problem_.model.turn_for(reference().path.at(progress_.s()).curvature, 0.0, problem_.slip);
   return std::clamp(angle, turn_.low, turn_.high);
 }
 
@@ -193,14 +175,15 @@ TrackOutput HorizonTracker::stand(const VehicleState& then) {
 // The reference of the coming seconds: along the path as the speed profile goes from here.
 void HorizonTracker::refer_to_path(const VehicleState& then, double s) {
   const Path& path = reference().path;
-  const PathSegment& now = segment();
+  const PathSegment& now = progress_.segment();
   const double direction = sign(now.gear);
   const Slip& slip = problem_.slip;
   SpeedProfile::State at{s, std::max(0.0, direction * then.speed * (1.0 - slip.loss_ratio))};
   double yaw = problem_.start(kYaw);
   for (int k = 0; k <= problem_.intervals(); ++k) {
-    if (k > 0) at = profile_.advance(at.s, at.speed, segment_, problem_.interval_s);
-    const PathSample sample = path.at(std::clamp(at.s, now.begin_s, now.end_s - kBeforeEnd));
+    if (k > 0) at = profile_.advance(at.s, at.speed, progress_.number(), problem_.interval_s);
+    const PathSample sample =
+        path.at(std::clamp(at.s, now.begin_s, now.end_s - PathProgress::kBeforeEnd));
     const double wheels = direction * at.speed / (1.0 - slip.loss_ratio);
     yaw += wrap_angle(sample.pose.yaw - slip.side_rad - yaw);
     HorizonStage& stage = problem_.stages[static_cast<std::size_t>(k)];
@@ -232,8 +215,8 @@ void HorizonTracker::set_bounds(const VehicleState& then) {
   }
   fastest = kSpeedRoom * fastest + kLeastSpeedRoom;
   const bool pivoting = mode_ == Mode::kPivoting;  // may correct its place both ways
-  const double forwards = pivoting || segment().gear == Gear::kForward ? fastest : 0.0;
-  const double backwards = pivoting || segment().gear == Gear::kReverse ? -fastest : 0.0;
+  const double forwards = pivoting || progress_.segment().gear == Gear::kForward ? fastest : 0.0;
+  const double backwards = pivoting || progress_.segment().gear == Gear::kReverse ? -fastest : 0.0;
   const Bounds speed{std::min(backwards, then.speed), std::max(forwards, then.speed)};
   const double turn = turn_of(then);
   for (std::size_t k = 0; k < problem_.stages.size(); ++k) {
@@ -299,20 +282,16 @@ Command HorizonTracker::first_command(const VehicleState& then, double dt) const
 }
 
 TrackOutput HorizonTracker::drive(const VehicleState& then, double dt) {
-  const PathSegment& now = segment();
+  const PathSegment& now = progress_.segment();
   const Path& path = reference().path;
-  const auto inside = [&now](double s) { return std::clamp(s, now.begin_s, now.end_s); };
-  const Projection nearest = path.project(then.pose.position(), inside(s_ - config_.search_m),
-                                          inside(s_ + config_.search_m));
+  const Projection nearest = progress_.nearest(then.pose.position(), config_.search_m);
   if (!(nearest.distance <= config_.lost_beyond_m)) return stop(TrackStatus::kPathLost);
-  const double left = remaining(then.pose, nearest.s);
+  const double left = progress_.remaining(then.pose, nearest.s);
   if (left <= config_.stop_tolerance_m) return arrive(then);
-  // On a cusp, of the two segments that meet there, this one.
-  const double least = std::max(s_, now.begin_s + kPastCusp);
-  s_ = std::clamp(nearest.s, least, std::max(least, now.end_s - kBeforeEnd));
+  progress_.move_to(nearest.s);
 
   problem_.start << then.pose.x, then.pose.y, then.pose.yaw, then.speed, turn_of(then);
-  const double path_yaw = path.at(inside(nearest.s)).pose.yaw - problem_.slip.side_rad;
+  const double path_yaw = path.at(progress_.inside(nearest.s)).pose.yaw - problem_.slip.side_rad;
   const double heading_error = wrap_angle(then.pose.yaw - path_yaw);
   if (!ackermann()) {
     const double limit =

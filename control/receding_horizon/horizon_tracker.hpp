@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "control/path_progress.hpp"
 #include "control/receding_horizon/horizon_solver.hpp"
 #include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
@@ -112,11 +113,7 @@ class HorizonTracker : public Tracker {
   double turn_of(const VehicleState& state) const {
     return ackermann() ? state.steering : state.yaw_rate;
   }
-  const PathSegment& segment() const {
-    return reference().path.segments()[static_cast<std::size_t>(segment_)];
-  }
   VehicleState predict(const VehicleState& now) const;
-  double remaining(const Pose2& pose, double s) const;
   TrackOutput stop(TrackStatus status);
   TrackOutput give(const Command& command, TrackStatus status);
   TrackOutput arrive(const VehicleState& then);
@@ -146,8 +143,7 @@ class HorizonTracker : public Tracker {
   int stale_ = 0;  // cycles in a row without a new plan
   HorizonCounts counts_;
   Mode mode_ = Mode::kDone;
-  int segment_ = 0;
-  double s_ = 0.0;  // progress [m]
+  PathProgress progress_;
   bool changing_gear_ = false;
   double gear_left_ = 0.0;      // of a gear change [s]
   double steering_left_ = 0.0;  // until stuck wheels no longer hold it up [s]

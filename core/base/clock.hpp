@@ -16,6 +16,12 @@ class SteadyClock : public Clock {
   double now() const override;
 };
 
+/// The processor time of the calling thread: what runs beside it does not count.
+class ThreadClock : public Clock {
+ public:
+  double now() const override;
+};
+
 /// A moment on a clock. Without a clock it never comes: the work is bounded by iterations alone and
 /// can be repeated to the bit.
 struct Deadline {

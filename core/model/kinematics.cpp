@@ -14,6 +14,12 @@ double lagged(double way, double lag, double dt) {
 
 }  // namespace
 
+bool is_finite(const VehicleState& state) {
+  return std::isfinite(state.pose.x) && std::isfinite(state.pose.y) &&
+         std::isfinite(state.pose.yaw) && std::isfinite(state.speed) &&
+         std::isfinite(state.steering) && std::isfinite(state.yaw_rate);
+}
+
 double step_steering(const Vehicle& vehicle, double actual, double command, double dt) {
   const double limit = vehicle.max_steering_rad();
   const double wanted = std::clamp(command, -limit, limit) - actual;

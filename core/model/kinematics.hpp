@@ -24,6 +24,9 @@ struct VehicleState {
   double yaw_rate = 0.0;  ///< of the wheels [rad/s]; differential
 };
 
+/// Whether all of it are numbers.
+bool is_finite(const VehicleState& state);
+
 /// What a controller goes by: the state as measured or estimated, and the slip if it is known.
 struct VehicleEstimate {
   VehicleEstimate() = default;

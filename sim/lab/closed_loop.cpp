@@ -87,7 +87,8 @@ const char* describe(TrackStatus failure) {
 class Driver {
  public:
   Driver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits, const Farm& farm,
-         const Ground& ground, const SimulationConfig& config, ChargerSlots& slots)
+         const Ground& ground, const SimulationConfig& config, ChargerSlots& slots,
+         const Clock* clock)
       : number_(number),
         plan_(plan),
         visits_(visits),
@@ -97,7 +98,7 @@ class Driver {
         slots_(slots),
         vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
                  config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
-        tracker_(make_tracker(plan.vehicle, config.control, config.sensors, config.step_s)),
+        tracker_(make_tracker(plan.vehicle, config.control, config.sensors, config.step_s, clock)),
         estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
         worst_(plan.legs.size(), 0.0) {
     run_.leg_done.assign(plan.legs.size(), false);
@@ -174,6 +175,7 @@ class Driver {
   void drive(double time) {
     const TrackOutput output = tracker_->step(known_, config_.step_s);
     told_ = output.command;
+    if (output.stale) ++run_.metrics.stale_plan_count;
     const Point2 before = vehicle_.truth().pose.position();
     if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
       return arrive(time);
@@ -377,6 +379,7 @@ RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vecto
     all.min_soc = std::min(all.min_soc, one.min_soc);
     all.reserve_kept = all.reserve_kept && one.reserve_kept;
     all.wrong_gear_count += one.wrong_gear_count;
+    all.stale_plan_count += one.stale_plan_count;
   }
   count_rows(plans, runs, all);
   all.tracking = fleet_tracking(plans, runs);
@@ -414,13 +417,13 @@ std::vector<FleetTick> fleet_ticks(const FleetRun& run, double period) {
 
 FleetRun drive_fleet(const std::vector<VehiclePlan>& plans, const std::vector<Visit>& visits,
                      const Farm& farm, const Ground& ground, const SimulationConfig& config,
-                     const Progress& progress) {
+                     const Progress& progress, const Clock* clock) {
   ChargerSlots slots(farm);
   std::vector<Driver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
-    drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots);
+    drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots, clock);
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {

@@ -77,6 +77,7 @@ struct RunMetrics {
   double min_soc = 1.0;
   bool reserve_kept = true;  ///< no battery ever went below its reserve
   int wrong_gear_count = 0;  ///< ticks that drove against the path's gear
+  int stale_plan_count = 0;  ///< ticks that drove by an older plan of the tracker
 };
 
 /// One vehicle's run.
@@ -108,9 +109,10 @@ using Progress = std::function<void(double fraction, double time_s)>;
 
 /// Drives the plans of all vehicles in lock-step simulation, each with the tracker that suits its
 /// kinematics. At chargers vehicles queue for slots, in the order in which they arrive. Vehicles do
-/// not see each other yet. Deterministic: same plan, configuration and seed, same trace to the bit.
+/// not see each other yet. Deterministic: same plan, configuration and seed, same trace to the bit;
+/// unless there is a `clock` and the trackers' deadlines are held against it.
 FleetRun drive_fleet(const std::vector<VehiclePlan>& plans, const std::vector<Visit>& visits,
                      const Farm& farm, const Ground& ground, const SimulationConfig& config,
-                     const Progress& progress = {});
+                     const Progress& progress = {}, const Clock* clock = nullptr);
 
 }  // namespace headland

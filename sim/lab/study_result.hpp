@@ -15,7 +15,7 @@ struct Statistic {
   std::optional<double> median{};
   std::optional<double> std{};  ///< standard deviation
   std::optional<double> p95{};
-  std::optional<double> p99{};  ///< of metrics with very many values only
+  std::optional<double> p99{};     ///< of metrics with very many values only
   std::optional<double> ci_low{};  ///< 95 % confidence interval of the mean (or of a proportion)
   std::optional<double> ci_high{};
 };

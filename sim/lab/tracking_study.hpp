@@ -17,6 +17,7 @@
 namespace headland {
 
 enum class StudyTracker { kSeedPurePursuit, kPurePursuit, kRover, kRhmcIpopt, kRhmcRti };
+/// kNone: the trackers are told the true state, and no slip.
 enum class StudyEstimator { kNone, kEkf, kRheNone, kRheUniform, kRheStructured };
 enum class StudySlip { kNone, kConstant, kStepped, kCrossSlope };
 

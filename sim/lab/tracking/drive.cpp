@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
+
+#include "core/base/clock.hpp"
 
 namespace headland {
 namespace {
@@ -15,13 +16,6 @@ constexpr double kRecovered = 0.05;  // [m]
 constexpr double kStill = 1e-3;      // [m/s]
 constexpr double kPatience = 10.0;   // times the planned duration, and a minute
 constexpr double kLost = 3.0;        // [m]
-
-// Of this thread, so that what runs beside it does not count [ms].
-double processor_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 // A root mean square in the making.
 struct MeanSquare {
@@ -118,6 +112,7 @@ TrackingDrive drive_course(const Vehicle& vehicle, const TrackingCourse& course,
   TrackingDrive& drive = driver.drive();
   if (!tracker.start(reference)) return driver.finish();
   if (estimator != nullptr) estimator->reset(simulated.truth(), 0.0);
+  const ThreadClock clock;
   Command told;
   double s = 0.0;
   const double most = patience(course);
@@ -125,12 +120,12 @@ TrackingDrive drive_course(const Vehicle& vehicle, const TrackingCourse& course,
     const double now = static_cast<double>(tick) * cycle;
     VehicleEstimate known(simulated.truth());
     const std::span<const Measurement> sensed = simulated.sense(now);
-    const double begin = processor_ms();
+    const double begin = clock.now();
     if (estimator != nullptr) known = estimator->update(sensed, told, now).vehicle;
-    const double middle = processor_ms();
+    const double middle = clock.now();
     const TrackOutput output = tracker.step(known, cycle);
-    drive.solve_ms.push_back(processor_ms() - middle);
-    drive.estimate_ms.push_back(middle - begin);
+    drive.solve_ms.push_back(1e3 * (clock.now() - middle));
+    drive.estimate_ms.push_back(1e3 * (middle - begin));
     drive.duration_s = now;
     if (failed(output.status)) break;
     if (output.status == TrackStatus::kDone && std::abs(simulated.truth().speed) < kStill) {

@@ -106,6 +106,40 @@ TEST(ClosedLoop, ARowDrivenOffItsLineIsNotDone) {
   EXPECT_EQ(run.metrics.rows_done, 0);
 }
 
+// Runs ahead by a second at every look, but for one in so many pairs of looks (begin, deadline).
+class BusyClock : public Clock {
+ public:
+  explicit BusyClock(int quick_every) : quick_every_(quick_every) {}
+  double now() const override {
+    const bool quick = quick_every_ > 0 && looks_++ / 2 % quick_every_ == 0;
+    return now_ += quick ? 0.0 : 1.0;
+  }
+
+ private:
+  int quick_every_;
+  mutable long looks_ = 0;
+  mutable double now_ = 0.0;
+};
+
+TEST(ClosedLoop, HoldsTheTrackersDeadlineAgainstTheClockItIsGiven) {
+  SimulationConfig config;
+  config.step_s = 0.05;
+  config.control.tracker = TrackerKind::kRhmc;
+  const VehiclePlan plan = two_rows();
+  EXPECT_EQ(drive_plan(plan, config).metrics.stale_plan_count, 0);
+  config.control.rhmc.deadline_s = 0.5;
+  const BusyClock always(0);
+  const RunMetrics late =
+      drive_fleet({plan}, {}, Farm{}, Ground(), config, {}, &always).vehicles.front().metrics;
+  EXPECT_FALSE(late.completed);
+  EXPECT_NE(late.reason.find("solver failed"), std::string::npos) << late.reason;
+  const BusyClock mostly(3);
+  const RunMetrics some =
+      drive_fleet({plan}, {}, Farm{}, Ground(), config, {}, &mostly).vehicles.front().metrics;
+  EXPECT_TRUE(some.completed) << some.reason;
+  EXPECT_GT(some.stale_plan_count, 100);
+}
+
 TEST(ClosedLoop, SameSeedSameTraceOtherSeedOtherTrace) {
   SimulationConfig config;
   config.sensors.position_accuracy_m = 0.02;
