@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "core/model/steering_rate.hpp"
 
 namespace headland {
 namespace {
@@ -30,33 +33,25 @@ struct ZoneMaker {
   const SteeringPlanConfig& config;
   std::vector<SpeedZone> zones;
 
-  double rate() const { return config.rate_use_ratio * vehicle.steering_rate_radps; }
-
-  void add(double begin_s, double end_s, double speed, double wanted) {
-    const double bounded = std::max(speed, config.least_speed_ratio * wanted);
-    if (bounded < wanted) zones.push_back({begin_s, end_s, bounded});
+  SteeringPace pace() const {
+    return {config.rate_use_ratio, config.step_error_m, config.least_speed_ratio};
   }
 
-  // Curvature that changes by c over the length l, centred at the step, leaves the path by
-  // c l^2 / 24 (twice integrated); the steering takes l = v t for it.
+  void add(double s, const std::optional<SlowStretch>& slow) {
+    if (!slow) return;
+    const double begin_s = s - slow->before;
+    zones.push_back({begin_s, begin_s + slow->length, slow->speed});
+  }
+
   void add_step(double s, const PathPiece& before, const PathPiece& piece) {
-    const double from = before.end_curvature();
-    const double change = std::abs(piece.curvature - from);
-    const double wanted = leg_speed(reference, piece);
-    if (!(change > kSameCurvature && wanted > 0.0)) return;
-    const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
-                                 std::atan(vehicle.wheelbase_m * from));
-    const double seconds = turn / rate();
-    const double speed = std::sqrt(24.0 * config.step_error_m / change) / seconds;
-    const double half = 0.5 * std::max(speed, config.least_speed_ratio * wanted) * seconds;
-    add(s - half, s + half, speed, wanted);
+    add(s, slow_at_step(vehicle, before.end_curvature(), piece.curvature,
+                        leg_speed(reference, piece), pace()));
   }
 
   // On a clothoid the steering keeps up at this speed.
   void add_ramp(double s, const PathPiece& piece) {
-    const double wanted = leg_speed(reference, piece);
-    if (piece.sharpness == 0.0 || !(wanted > 0.0)) return;
-    add(s, s + piece.length, rate() / steering_per_metre(piece, vehicle.wheelbase_m), wanted);
+    add(s, slow_on_ramp(vehicle, piece.curvature, piece.end_curvature(), piece.length,
+                        leg_speed(reference, piece), pace()));
   }
 };
 

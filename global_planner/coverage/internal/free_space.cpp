@@ -41,9 +41,10 @@ bool overlap(const Box& a, const Box& b) {
          across(b) < b.half_width + a.half_length * s + a.half_width * c;
 }
 
-// Samples of an arc so that no point of the outline moves farther than `step` between them.
+// Samples of an arc or clothoid so that no point of the outline moves farther than `step` between
+// them.
 int arc_samples(const CurvePiece& piece, const Footprint& outline, double step) {
-  const double radius = 1.0 / std::abs(piece.curvature);
+  const double radius = 1.0 / piece.max_abs_curvature();
   const double corner =
       std::hypot(radius + 0.5 * outline.width_m, std::max(outline.front_m, outline.rear_m));
   const double moved = std::abs(piece.length) * corner / radius;
@@ -173,8 +174,8 @@ bool FreeSpace::fits(const Pose2& from, const Curve& curve, Travel travel, OwnRo
     const auto at = static_cast<std::size_t>(i);
     const CurvePiece& piece = curve.begin()[i];
     starts[at] = pose;
-    pose = advance(pose, piece.curvature, piece.length);
-    if (piece.curvature == 0.0) {
+    pose = piece.end_pose(pose);
+    if (piece.curvature == 0.0 && piece.sharpness == 0.0) {
       if (!fits_straight(starts[at], piece.length, travel, own)) return false;
     } else {
       counts[at] = arc_samples(piece, shape, arc_step_);
@@ -192,7 +193,7 @@ bool FreeSpace::fits(const Pose2& from, const Curve& curve, Travel travel, OwnRo
       for (int k = coarsest ? 0 : stride; k <= counts[at]; k += coarsest ? stride : 2 * stride) {
         if (counts[at] == 0) break;
         const double s = piece.length * k / counts[at];
-        if (!fits(advance(starts[at], piece.curvature, s), shape, own)) return false;
+        if (!fits(piece.pose_at(starts[at], s), shape, own)) return false;
       }
     }
   }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+
+#include "core/geometry/curve.hpp"
+#include "core/model/vehicle.hpp"
+
+namespace headland {
+
+/// How a vehicle is driven where the curvature of its way changes faster than its steering.
+struct SteeringPace {
+  double rate_use_ratio = 0.95;    ///< share of the actuator's rate that is used
+  double step_error_m = 0.02;      ///< at a step of curvature the way may be left by this [m]
+  double least_speed_ratio = 0.2;  ///< of the speed wanted, below which it never slows down
+};
+
+/// A stretch driven more slowly.
+struct SlowStretch {
+  double before = 0.0;  ///< it begins so far ahead of the step or clothoid [m]
+  double length = 0.0;  ///< [m]
+  double speed = 0.0;   ///< [m/s]
+};
+
+/// The sharpest change of curvature along the way that the vehicle follows at `speed` [m/s], from
+/// straight wheels, where they are the slowest [1/m2]; infinite for a differential vehicle whose
+/// yaw rate changes immediately.
+double sharpness_limit(const Vehicle& vehicle, double speed, const SteeringPace& pace = {});
+
+/// What a step of the curvature [1/m] asks of a steered vehicle. Curvature that changes by c over
+/// the length l, centred at the step, leaves the way by c l^2 / 24 (twice integrated); the steering
+/// takes l = v t for it. None where it keeps up at `wanted` [m/s].
+std::optional<SlowStretch> slow_at_step(const Vehicle& vehicle, double from, double to,
+                                        double wanted, const SteeringPace& pace = {});
+
+/// What a clothoid, between two curvatures [1/m], asks of it: a speed that its steering keeps up
+/// with.
+std::optional<SlowStretch> slow_on_ramp(const Vehicle& vehicle, double from, double to,
+                                        double length, double wanted,
+                                        const SteeringPace& pace = {});
+
+/// Time [s] that a steered vehicle loses against driving all of the curve at `wanted` [m/s]; the
+/// curve lies between straights. Stretches nearer to each other than speeding up and braking take
+/// count as one. At cusps the wheels turn while it stands.
+double slow_down_time(const Vehicle& vehicle, const Curve& curve, double wanted,
+                      const SteeringPace& pace = {});
+
+}  // namespace headland
