@@ -139,6 +139,16 @@ class Search {
     return paces_[static_cast<std::size_t>(c.pace)];
   }
 
+  // Where the curve begins and ends.
+  Pose2 first_pose(const Leads& lead) const {
+    const Point2 p = from_.out.position() + lead.out * heading_out_;
+    return {p.x(), p.y(), from_.out.yaw};
+  }
+  Pose2 last_pose(const Leads& lead) const {
+    const Point2 p = to_.out.position() + lead.in * heading_in_;
+    return reversed({p.x(), p.y(), to_.out.yaw});
+  }
+
   void push(const Candidate& candidate) {
     heap_.push_back(candidate);
     std::push_heap(heap_.begin(), heap_.end(), costs_more);
@@ -182,9 +192,7 @@ class Search {
     const double radius = steering_.plain.turn.radius();
     const double straight = between(lead).norm();
     const bool forwards = candidate.kind == Kind::kDubins;
-    const double dubins = forwards ? dubins_length(forward(from_.out, lead.out),
-                                                   reversed(forward(to_.out, lead.in)), radius)
-                                   : 0.0;
+    const double dubins = forwards ? dubins_length(first_pose(lead), last_pose(lead), radius) : 0.0;
     candidate.stage = Candidate::Stage::kPace;
     for (candidate.pace = 0; candidate.pace < static_cast<int>(paces_.size()); ++candidate.pace) {
       const TurnPace& at = pace(candidate);
@@ -214,8 +222,8 @@ class Search {
   // The candidate's turn, if there is one of its kind.
   std::optional<Turn> resolve(const Candidate& candidate, const TurnPace& pace) const {
     const Leads lead = leads(candidate.line, candidate.steps);
-    const Pose2 from = forward(from_.out, lead.out);
-    const Pose2 to = reversed(forward(to_.out, lead.in));
+    const Pose2 from = first_pose(lead);
+    const Pose2 to = last_pose(lead);
     std::optional<Curve> curve;
     switch (candidate.kind) {
       case Kind::kDubins:
