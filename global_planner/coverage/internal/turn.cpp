@@ -78,10 +78,13 @@ struct Candidate {
   Stage stage = Stage::kBound;
 };
 
-bool costs_more(const Candidate& a, const Candidate& b) {
-  return std::tie(a.cost, a.line, a.steps, a.kind, a.pace) >
-         std::tie(b.cost, b.line, b.steps, b.kind, b.pace);
-}
+// Of a heap with the cheapest on top.
+struct CostsMore {
+  bool operator()(const Candidate& a, const Candidate& b) const {
+    if (a.cost != b.cost) return a.cost > b.cost;
+    return std::tie(a.line, a.steps, a.kind, a.pace) > std::tie(b.line, b.steps, b.kind, b.pace);
+  }
+};
 
 // One search between two ends.
 class Search {
@@ -114,7 +117,7 @@ class Search {
     }
     int tests = 0;
     while (!heap_.empty() && tests < kMostTests) {
-      std::pop_heap(heap_.begin(), heap_.end(), costs_more);
+      std::pop_heap(heap_.begin(), heap_.end(), CostsMore());
       const Candidate next = heap_.back();
       heap_.pop_back();
       if (next.stage == Candidate::Stage::kBound) {
@@ -151,7 +154,7 @@ class Search {
 
   void push(const Candidate& candidate) {
     heap_.push_back(candidate);
-    std::push_heap(heap_.begin(), heap_.end(), costs_more);
+    std::push_heap(heap_.begin(), heap_.end(), CostsMore());
   }
 
   bool ended(int line, int steps) const {
@@ -181,6 +184,15 @@ class Search {
           Candidate::Stage::kBound});
   }
 
+  // Between the arcs' centres of a first and a last turn to the same side.
+  double centres_apart(const Leads& lead, const SmoothTurn& turn, double hand) const {
+    const Point2 sum = heading_out_ - heading_in_;  // of the headings at both ends of the curve
+    const Point2 change = -heading_in_ - heading_out_;
+    const Point2 apart = between(lead) - turn.radius() * turn.ahead() * sum +
+                         hand * turn.radius() * turn.aside() * Point2(-change.y(), change.x());
+    return apart.norm();
+  }
+
   // Bounds for each pace. No curve is shorter than Dubins'; a manoeuvre with cusps has two whole
   // clothoids, each longer by half than the arc that it stands for.
   void push_paces(Candidate candidate) {
@@ -190,17 +202,26 @@ class Search {
     }
     const Leads lead = leads(candidate.line, candidate.steps);
     const double radius = steering_.plain.turn.radius();
-    const double straight = between(lead).norm();
-    const bool forwards = candidate.kind == Kind::kDubins;
-    const double dubins = forwards ? dubins_length(first_pose(lead), last_pose(lead), radius) : 0.0;
+    const double dubins = candidate.kind == Kind::kDubins
+                              ? dubins_length(first_pose(lead), last_pose(lead), radius)
+                              : 0.0;
     candidate.stage = Candidate::Stage::kPace;
     for (candidate.pace = 0; candidate.pace < static_cast<int>(paces_.size()); ++candidate.pace) {
       const TurnPace& at = pace(candidate);
-      const double least =
-          forwards ? dubins : std::max(straight, turning_ + radius * at.turn.ramp());
-      // A straight has no clothoid to slow down on.
-      const double lost =
-          forwards ? (turning_ > kSliver ? at.least_lost_s : 0.0) : at.cusped_lost_s;
+      double least = dubins;
+      double lost = at.cusped_lost_s;
+      if (candidate.kind == Kind::kDubins) {
+        // A straight has no clothoid to slow down on, and two that make a wide turn are shorter.
+        const bool whole = turning_ >= radius * std::max(0.5 * kPi, at.turn.least_with_arc());
+        lost = whole ? at.turned_lost_s : turning_ > kSliver ? at.least_lost_s : 0.0;
+      } else if (candidate.kind == Kind::kFishtail) {
+        least = turning_ + radius * at.turn.ramp() +
+                std::min(centres_apart(lead, at.turn, 1.0), centres_apart(lead, at.turn, -1.0));
+      } else {
+        const double hand = candidate.kind == Kind::kThreePointLeft ? 1.0 : -1.0;
+        if (centres_apart(lead, at.turn, hand) >= 4.0 * radius) continue;
+        least = std::max(between(lead).norm(), turning_ + radius * at.turn.ramp());
+      }
       candidate.cost = rate_.of(lead.out + least + lead.in, cusps_at_least(candidate.kind), lost);
       push(candidate);
     }
@@ -335,7 +356,8 @@ TurnSearch::TurnSearch(const FreeSpace& space, const Vehicle& vehicle, double sp
     const double less = (1.0 - part) * speed;
     const double braking = less * less / (speed * vehicle.acceleration_mps2);
     const double slow = 2.0 * turn.ramp() * turn.radius() * (1.0 / part - 1.0) / speed;
-    steering_.smooth.push_back({turn, braking, braking + slow, part < 1.0});
+    steering_.smooth.push_back(
+        {turn, braking, braking + slow / (1.0 + turn.ramp()), braking + slow, part < 1.0});
     // Only steered vehicles slow down on clothoids.
     if (vehicle.steering != Steering::kAckermann) break;
   }

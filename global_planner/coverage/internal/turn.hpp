@@ -65,8 +65,9 @@ struct TurnKinds {
 /// Curves of one sharpness.
 struct TurnPace {
   SmoothTurn turn;
-  double least_lost_s = 0.0;   ///< time that any such curve loses
-  double cusped_lost_s = 0.0;  ///< and one with cusps, at least
+  double least_lost_s = 0.0;   ///< time that any such curve loses at least
+  double turned_lost_s = 0.0;  ///< and one by a quarter turn or more
+  double cusped_lost_s = 0.0;  ///< and one with cusps
   bool slows_down = true;
 };
 
@@ -96,7 +97,7 @@ class TurnSearch {
 
   /// Of a vehicle whose steering turns immediately.
   TurnSearch(const FreeSpace& space, double radius)
-      : space_(space), steering_{{SmoothTurn({1.0 / radius}), 0.0, 0.0, true}, {}, {}, 0.0} {}
+      : space_(space), steering_{{SmoothTurn({1.0 / radius}), 0.0, 0.0, 0.0, true}, {}, {}, 0.0} {}
   /// @param speed Of the leg [m/s].
   TurnSearch(const FreeSpace& space, const Vehicle& vehicle, double speed);
 
