@@ -14,6 +14,7 @@
 #include "core/geometry/clothoid.hpp"
 #include "core/geometry/dubins.hpp"
 #include "core/geometry/reeds_shepp.hpp"
+#include "core/geometry/smooth_dubins.hpp"
 #include "tests/support/curve_constructions.hpp"
 
 namespace headland {
@@ -181,6 +182,31 @@ void clothoid_headland(benchmark::State& state) {
   run(state, [](const Query& q) { return fit_clothoid(q.from, q.to); });
 }
 
+// With the sharpness at which other libraries are measured.
+const SmoothTurn kSmooth({1.0 / kRadius, 0.5});
+
+void smooth_dubins_curve_headland(benchmark::State& state) {
+  run(state, [](const Query& q) { return smooth_dubins(q.from, q.to, kSmooth); });
+}
+void smooth_dubins_length_headland(benchmark::State& state) {
+  run(state, [](const Query& q) { return smooth_dubins_length(q.from, q.to, kSmooth); });
+}
+
+// How much longer than Dubins' the curves are.
+void print_smooth_lengths() {
+  double sum = 0.0;
+  double dubins = 0.0;
+  double worst = 0.0;
+  for (const Query& q : random_queries()) {
+    const Curve curve = smooth_dubins(q.from, q.to, kSmooth);
+    sum += curve.length();
+    dubins += dubins_length(q.from, q.to, kRadius);
+    worst = std::max(worst, end_error(curve, q.from, q.to).position);
+  }
+  fmt::print("Smooth Dubins: {:.4f} times as long as Dubins on average, end error {:.2g} m\n",
+             sum / dubins, worst);
+}
+
 // All queries once a repetition; the median holds off what else the machine does.
 void repeated(benchmark::internal::Benchmark* entry) {
   entry->Iterations(kCount)->Repetitions(15)->ReportAggregatesOnly(true)->Unit(
@@ -193,6 +219,8 @@ BENCHMARK(reeds_shepp_length_headland)->Apply(repeated);
 BENCHMARK(reeds_shepp_curve_headland)->Apply(repeated);
 BENCHMARK(reeds_shepp_length_ompl)->Apply(repeated);
 BENCHMARK(clothoid_headland)->Apply(repeated);
+BENCHMARK(smooth_dubins_length_headland)->Apply(repeated);
+BENCHMARK(smooth_dubins_curve_headland)->Apply(repeated);
 
 }  // namespace
 }  // namespace headland
@@ -201,6 +229,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   headland::print_faults();
+  headland::print_smooth_lengths();
   benchmark::RunSpecifiedBenchmarks();
   return 0;
 }

@@ -6,15 +6,16 @@
 #include <queue>
 #include <utility>
 
+#include "core/model/steering_rate.hpp"
+
 namespace headland {
 namespace {
 
-constexpr double kSameCurvature = 1e-6;  // [1/m]
-constexpr double kUnlimited = 1000.0;    // what the configuration takes for no limit
-constexpr double kCut = 0.25;            // zones along clothoids are no longer [m] ...
-constexpr double kLeastCuts = 8.0;       // ... and no fewer
-constexpr double kTurnCut = 0.04;        // on slopes they turn by no more than this [rad]
-constexpr double kCrawl = 1e-3;          // no limit on power asks for less [m/s]
+constexpr double kUnlimited = 1000.0;  // what the configuration takes for no limit
+constexpr double kCut = 0.25;          // zones along clothoids are no longer [m] ...
+constexpr double kLeastCuts = 8.0;     // ... and no fewer
+constexpr double kTurnCut = 0.04;      // on slopes they turn by no more than this [rad]
+constexpr double kCrawl = 1e-3;        // no limit on power asks for less [m/s]
 
 // The speed that legs and gear allow on a piece [m/s].
 double wanted_speed(const Reference& reference, const Vehicle& vehicle, const PathPiece& piece) {
@@ -39,64 +40,6 @@ void cut(const PathPiece& piece, double step, const Use& use) {
 double most_curvature(const PathPiece& piece, double begin, double end) {
   return std::max(std::abs(piece.curvature_at(begin)), std::abs(piece.curvature_at(end)));
 }
-
-// The fastest change of the steering angle along a piece [rad/m], where it bends least.
-double steering_per_metre(const PathPiece& piece, double wheelbase) {
-  const bool straightens = piece.curvature * piece.end_curvature() < 0.0;
-  const double least =
-      straightens ? 0.0 : std::min(std::abs(piece.curvature), std::abs(piece.end_curvature()));
-  return wheelbase * std::abs(piece.sharpness) / (1.0 + wheelbase * wheelbase * least * least);
-}
-
-struct SteeringZoneMaker {
-  const Reference& reference;
-  const Vehicle& vehicle;
-  const SpeedLimitConfig& config;
-  std::vector<SpeedZone> zones;
-
-  bool ackermann() const { return vehicle.steering == Steering::kAckermann; }
-  double rate() const { return config.steering_use_ratio * vehicle.steering_rate_radps; }
-  double yaw_acceleration() const {
-    return config.steering_use_ratio * vehicle.yaw_acceleration_radps2;
-  }
-
-  double bounded(double speed, double wanted) const {
-    return std::max(speed, config.least_speed_ratio * wanted);
-  }
-  void add(double begin_s, double end_s, double speed, double wanted) {
-    if (bounded(speed, wanted) < wanted) {
-      zones.push_back({begin_s, end_s, bounded(speed, wanted)});
-    }
-  }
-
-  // Curvature that changes by c over the length l, centred at the step, leaves the path by
-  // c l^2 / 24 (twice integrated); the steering takes l = v t for it. An Ackermann vehicle's time t
-  // is the same at all speeds, a differential one's is v c / (yaw acceleration).
-  void add_step(double s, const PathPiece& before, const PathPiece& piece) {
-    const double from = before.end_curvature();
-    const double change = std::abs(piece.curvature - from);
-    const double wanted = wanted_speed(reference, vehicle, piece);
-    if (!(change > kSameCurvature && wanted > 0.0)) return;
-    const double length = std::sqrt(24.0 * config.step_error_m / change);
-    const double turn = std::abs(std::atan(vehicle.wheelbase_m * piece.curvature) -
-                                 std::atan(vehicle.wheelbase_m * from));
-    const double speed =
-        ackermann() ? length / (turn / rate()) : std::sqrt(length * yaw_acceleration() / change);
-    const double driven = bounded(speed, wanted);
-    const double half =
-        0.5 * driven * (ackermann() ? turn / rate() : driven * change / yaw_acceleration());
-    add(s - half, s + half, speed, wanted);
-  }
-
-  // On a clothoid the steering keeps up at this speed.
-  void add_ramp(double s, const PathPiece& piece) {
-    const double wanted = wanted_speed(reference, vehicle, piece);
-    if (piece.sharpness == 0.0 || !(wanted > 0.0)) return;
-    const double speed = ackermann() ? rate() / steering_per_metre(piece, vehicle.wheelbase_m)
-                                     : std::sqrt(yaw_acceleration() / std::abs(piece.sharpness));
-    add(s, s + piece.length, speed, wanted);
-  }
-};
 
 void sort_by_begin(std::vector<SpeedZone>& zones) {
   std::stable_sort(zones.begin(), zones.end(),
@@ -144,18 +87,25 @@ DriveStep at_speed(DriveStep step, double v) {
 
 std::vector<SpeedZone> steering_zones(const Reference& reference, const Vehicle& vehicle,
                                       const SpeedLimitConfig& config) {
-  SteeringZoneMaker maker{reference, vehicle, config, {}};
-  if (!maker.ackermann() && vehicle.yaw_acceleration_radps2 >= kUnlimited) return {};
+  const SteeringPace pace{config.steering_use_ratio, config.step_error_m, config.least_speed_ratio};
+  std::vector<SpeedZone> zones;
   double s = 0.0;
   const PathPiece* before = nullptr;
   for (const PathPiece& piece : reference.path.pieces()) {
-    if (before != nullptr && before->gear == piece.gear) maker.add_step(s, *before, piece);
-    maker.add_ramp(s, piece);
+    const double wanted = wanted_speed(reference, vehicle, piece);
+    if (before != nullptr && before->gear == piece.gear) {
+      const auto slow =
+          slow_at_step(vehicle, before->end_curvature(), piece.curvature, wanted, pace);
+      if (slow) zones.push_back({s - 0.5 * slow->length, s + 0.5 * slow->length, slow->speed});
+    }
+    const auto slow =
+        slow_on_ramp(vehicle, piece.curvature, piece.end_curvature(), piece.length, wanted, pace);
+    if (slow) zones.push_back({s, s + slow->length, slow->speed});
     before = &piece;
     s += piece.length;
   }
-  sort_by_begin(maker.zones);
-  return std::move(maker.zones);
+  sort_by_begin(zones);
+  return zones;
 }
 
 std::vector<SpeedZone> speed_zones(const Reference& reference, const Vehicle& vehicle,

@@ -4,20 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/model/steering_rate.hpp"
+
 namespace headland {
 namespace {
 
 constexpr double kSlowest = 0.1;         // speed that a plan counts with at least [m/s]
 constexpr double kSameCurvature = 1e-6;  // [1/m]
 constexpr int kPasses = 6;               // of the solver, each linearised around the last
-
-// The fastest change of the steering angle along a piece [rad/m], where it bends least.
-double steering_per_metre(const PathPiece& piece, double wheelbase) {
-  const bool straightens = piece.curvature * piece.end_curvature() < 0.0;
-  const double least =
-      straightens ? 0.0 : std::min(std::abs(piece.curvature), std::abs(piece.end_curvature()));
-  return wheelbase * std::abs(piece.sharpness) / (1.0 + wheelbase * wheelbase * least * least);
-}
 
 }  // namespace
 
@@ -52,7 +46,8 @@ struct SteeringPlan::Builder {
 
   // A clothoid along which the steering cannot keep up at the speed driven there.
   bool too_sharp(int segment, double s, const PathPiece& piece) const {
-    const double turning = steering_per_metre(piece, vehicle.wheelbase_m);
+    const double turning = steering_per_metre(vehicle.wheelbase_m, piece.curvature,
+                                              piece.end_curvature(), piece.length);
     return turning * speed(segment, s + 0.5 * piece.length) >
            config.rate_use_ratio * vehicle.steering_rate_radps * (1.0 + 1e-9);
   }

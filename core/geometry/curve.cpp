@@ -22,14 +22,15 @@ int Curve::cusps() const {
 
 Pose2 Curve::end_pose(const Pose2& from) const {
   Pose2 pose = from;
-  for (const CurvePiece& piece : *this) pose = advance(pose, piece.curvature, piece.length);
+  for (const CurvePiece& piece : *this) pose = piece.end_pose(pose);
   return pose;
 }
 
 std::string Curve::word() const {
   std::string text;
   for (const CurvePiece& piece : *this) {
-    text += piece.curvature > 0.0 ? 'L' : piece.curvature < 0.0 ? 'R' : 'S';
+    const double bend = piece.mean_curvature();
+    text += bend > 0.0 ? 'L' : bend < 0.0 ? 'R' : 'S';
     text += piece.length > 0.0 ? '+' : '-';
   }
   return text;

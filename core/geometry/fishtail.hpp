@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/geometry/curve.hpp"
+#include "core/geometry/smooth_turn.hpp"
 
 namespace headland {
 
@@ -15,5 +15,10 @@ namespace headland {
 /// one that swings away from the next row, (pi + 2) R + d, which no planner wants.
 /// @return None where the straight piece would not run in reverse (then Dubins is shorter).
 std::optional<Curve> fishtail(const Pose2& from, const Pose2& to, double radius);
+
+/// The same with the clothoids of `turn` where it leaves the start and where it reaches the goal,
+/// both with the wheels straight. At its cusps the curvature steps: there the wheels are turned at
+/// a standstill. None too where an arc would turn by less than its clothoid.
+std::optional<Curve> fishtail(const Pose2& from, const Pose2& to, const SmoothTurn& turn);
 
 }  // namespace headland

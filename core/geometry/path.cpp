@@ -156,8 +156,9 @@ void Path::append(const Curve& curve, const Pose2& from, int leg) {
   Pose2 start = from;
   for (const CurvePiece& piece : curve) {
     const Gear gear = piece.length > 0.0 ? Gear::kForward : Gear::kReverse;
-    append(PathPiece{start, piece.curvature, std::abs(piece.length), gear, leg});
-    start = advance(start, piece.curvature, piece.length);
+    append(PathPiece{start, piece.curvature, std::abs(piece.length), gear, leg,
+                     sign(gear) * piece.sharpness});
+    start = piece.end_pose(start);
   }
 }
 

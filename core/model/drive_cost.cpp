@@ -32,4 +32,9 @@ DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cu
   return {length, step.duration_s + standing, energy, energy};
 }
 
+DriveCost standing_cost(const Vehicle& vehicle, double seconds) {
+  const double energy = seconds * vehicle.energy.base_power_w;
+  return {0.0, seconds, energy, energy};
+}
+
 }  // namespace headland

@@ -60,6 +60,9 @@ double leg_speed(const Vehicle& vehicle, LegKind kind);
 DriveCost drive_cost(const Vehicle& vehicle, LegKind kind, double length, int cusps = 0,
                      SoilClass soil = SoilClass::kFirm);
 
+/// Cost of `seconds` more on the way, as of standing: the base load goes on.
+DriveCost standing_cost(const Vehicle& vehicle, double seconds);
+
 }  // namespace headland
 
 template <>

@@ -41,6 +41,7 @@ struct Way {
   int index = -1;  // kTurn: of the turn; kThroughRow: the end of the row by which it is entered;
                    // kGiven: of the path
   WayType type = WayType::kNone;
+  double smoothing = 0.0;  // kTurn: what of the cost its clothoids ask for
 };
 
 }  // namespace
@@ -171,7 +172,8 @@ void Transitions::Impl::find_turns() {
   std::vector<std::vector<Found>> found(sites.size());
   const bool reverses = vehicle.can_reverse;
   const TurnKinds kinds{true, reverses && options.fishtail, reverses && options.reeds_shepp};
-  const TurnSearch search(space, radius);
+  const TurnSearch between_rows(space, vehicle, leg_speed(vehicle, LegKind::kTurn));
+  const TurnSearch to_stops(space, vehicle, leg_speed(vehicle, LegKind::kTransit));
   // Alike in front and behind, a vehicle drives the mirror image of each turn between rows back.
   const bool alike = vehicle.footprint.front_m == vehicle.footprint.rear_m;
   parallel_for(static_cast<int>(sites.size()), [&](int from) {
@@ -181,11 +183,13 @@ void Transitions::Impl::find_turns() {
       const bool rows_both = from < ends && to < ends;
       if (alike && rows_both && to < from) continue;
       const LegKind kind = rows_both ? LegKind::kTurn : LegKind::kTransit;
+      const TurnSearch& search = rows_both ? between_rows : to_stops;
       const auto turn = search.find(a, port(in_port(to)).end, kinds, pricer.flat_rate(kind));
       if (!turn) continue;
       const auto add = [&](int begin, int end, const Turn& way) {
         const Pose2& out = sites[static_cast<std::size_t>(begin)].depart;
-        const std::optional<DriveCost> cost = pricer.price(turn_path(out, way), kind, way.cusps());
+        const std::optional<DriveCost> cost =
+            pricer.price(turn_path(out, way), kind, way.cusps(), way.lost_s);
         if (!cost) steep_turns = true;
         if (cost) found[static_cast<std::size_t>(from)].push_back({begin, end, way, *cost});
       };
@@ -195,7 +199,9 @@ void Transitions::Impl::find_turns() {
   });
   for (const std::vector<Found>& of_site : found) {
     for (const Found& f : of_site) {
-      way(f.from, f.to) = {f.cost, static_cast<int>(turns.size()), WayType::kTurn};
+      const LegKind kind = f.from < ends && f.to < ends ? LegKind::kTurn : LegKind::kTransit;
+      way(f.from, f.to) = {f.cost, static_cast<int>(turns.size()), WayType::kTurn,
+                           pricer.flat_rate(kind).of(f.turn.smoothing_m, 0, f.turn.lost_s)};
       turns.push_back(f.turn);
     }
   }
@@ -267,12 +273,15 @@ void Transitions::Impl::find_lane_ways() {
 void Transitions::Impl::offer_lane_way(int from, int to, const WayCost& found) {
   Way& w = way(from, to);
   if (found.cost == kInfinity) return;
-  // On equal terms: a lane way must not win over a turn merely because lanes are driven faster.
+  // On equal terms: a lane way must not win over a turn merely because lanes are driven faster, or
+  // because their curves have no clothoids.
   const CostRate transit = pricer.flat_rate(LegKind::kTransit);
   const CostRate same = pricer.flat_rate(kind(w, from, to));
   const double length = found.drive.length_m;
   const double handicap = same.of(length, found.cusps) / transit.of(length, found.cusps);
-  if (w.type != WayType::kNone && value(w.cost) <= handicap * found.cost) return;
+  if (w.type != WayType::kNone && value(w.cost) - w.smoothing <= handicap * found.cost) {
+    return;
+  }
   w = {found.drive, -1, WayType::kLanes};
 }
 

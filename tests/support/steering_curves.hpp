@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/geometry/smooth_turn.hpp"
 #include "tests/support/curve_constructions.hpp"
 
 // What every steering curve must obey.
@@ -29,9 +30,36 @@ inline ::testing::AssertionResult obeys_the_laws(const Curve& curve, const Pose2
            << curve.word() << " of " << curve.length() << " m is shorter than the chord " << chord;
   }
   for (const CurvePiece& piece : curve) {
-    if (!(std::abs(piece.curvature) * radius <= 1.0 + 1e-15)) {
+    if (!(piece.max_abs_curvature() * radius <= 1.0 + 1e-15)) {
       return ::testing::AssertionFailure() << curve.word() << " bends by " << piece.curvature;
     }
+  }
+  return ::testing::AssertionSuccess();
+}
+
+/// The laws of curves with clothoids too: no sharper than allowed, with the wheels straight at both
+/// ends, and of a curvature that steps nowhere inside a gear.
+inline ::testing::AssertionResult obeys_the_smooth_laws(const Curve& curve, const Pose2& from,
+                                                        const Pose2& to, const SmoothTurn& turn) {
+  constexpr double kSame = 1e-11;  // [1/m]
+  const auto legal = obeys_the_laws(curve, from, to, turn.radius() * (1.0 - 1e-12));
+  if (!legal) return legal;
+  double before = 0.0;
+  bool forward = true;
+  for (const CurvePiece& piece : curve) {
+    const bool gear = piece.length > 0.0;
+    if (gear == forward && !(std::abs(piece.curvature - before) <= kSame)) {
+      return ::testing::AssertionFailure()
+             << curve.word() << " steps from " << before << " to " << piece.curvature;
+    }
+    if (!(std::abs(piece.sharpness) <= turn.sharpness() * (1.0 + 1e-12))) {
+      return ::testing::AssertionFailure() << curve.word() << " turns by " << piece.sharpness;
+    }
+    before = piece.end_curvature();
+    forward = gear;
+  }
+  if (forward && !(std::abs(before) <= kSame)) {
+    return ::testing::AssertionFailure() << curve.word() << " ends with " << before;
   }
   return ::testing::AssertionSuccess();
 }

@@ -73,6 +73,27 @@ inline Link mirrored_right_to_left(const UnitGoal& g) {
   return link(g.x - g.sin_phi, -g.y - 1.0 - g.cos_phi);
 }
 
+/// The mirrored problem: left turns for right ones.
+inline UnitGoal mirrored(const UnitGoal& g) {
+  UnitGoal goal = g;
+  goal.y = -g.y;
+  goal.phi = g.phi == kPi ? kPi : -g.phi;
+  goal.sin_phi = -g.sin_phi;
+  return goal;
+}
+
+/// From the centre of a left turn that begins at the start, `ahead` of it and `aside`, to the
+/// centre of one that ends at the goal, as far behind that.
+inline Link left_to_left(const UnitGoal& g, double ahead, double aside) {
+  return link(g.x - ahead - ahead * g.cos_phi - aside * g.sin_phi,
+              g.y - aside - ahead * g.sin_phi + aside * g.cos_phi);
+}
+/// To the centre of a right turn that ends at the goal.
+inline Link left_to_right(const UnitGoal& g, double ahead, double aside) {
+  return link(g.x - ahead - ahead * g.cos_phi + aside * g.sin_phi,
+              g.y - aside - ahead * g.sin_phi - aside * g.cos_phi);
+}
+
 /// The angle [rad] in [0, 2 pi), for angles in [-4 pi, 4 pi].
 inline double positive(double angle) {
   while (angle < 0.0) angle += kTwoPi;

@@ -41,13 +41,33 @@ bool overlap(const Box& a, const Box& b) {
          across(b) < b.half_width + a.half_length * s + a.half_width * c;
 }
 
-// Samples of an arc so that no point of the outline moves farther than `step` between them.
+// Samples of an arc or clothoid so that no point of the outline moves farther than `step` between
+// them.
 int arc_samples(const CurvePiece& piece, const Footprint& outline, double step) {
-  const double radius = 1.0 / std::abs(piece.curvature);
+  const double radius = 1.0 / piece.max_abs_curvature();
   const double corner =
       std::hypot(radius + 0.5 * outline.width_m, std::max(outline.front_m, outline.rear_m));
   const double moved = std::abs(piece.length) * corner / radius;
   return std::max(1, static_cast<int>(std::ceil(moved / step)));
+}
+
+// A pose on a piece, to a micrometre on clothoids: three nodes of Gauss' quadrature, as the samples
+// of a curve are many.
+Pose2 sample_pose(const CurvePiece& piece, const Pose2& start, double u) {
+  constexpr double kMostTurn = 1.0;  // [rad] of a stretch
+  const double turn = piece.max_abs_curvature() * std::abs(u);
+  if (piece.sharpness == 0.0 || turn > kMostTurn) return piece.pose_at(start, u);
+  constexpr double kNode = 0.7745966692414834;
+  const auto yaw = [&](double t) {
+    return start.yaw + (piece.curvature + 0.5 * piece.sharpness * t) * t;
+  };
+  Point2 sum(0.0, 0.0);
+  for (const auto& [place, weight] :
+       {std::pair(-kNode, 5.0), std::pair(0.0, 8.0), std::pair(kNode, 5.0)}) {
+    const double angle = yaw(0.5 * u * (1.0 + place));
+    sum += weight * Point2(std::cos(angle), std::sin(angle));
+  }
+  return {start.x + u / 18.0 * sum.x(), start.y + u / 18.0 * sum.y(), yaw(u)};
 }
 
 }  // namespace
@@ -173,8 +193,8 @@ bool FreeSpace::fits(const Pose2& from, const Curve& curve, Travel travel, OwnRo
     const auto at = static_cast<std::size_t>(i);
     const CurvePiece& piece = curve.begin()[i];
     starts[at] = pose;
-    pose = advance(pose, piece.curvature, piece.length);
-    if (piece.curvature == 0.0) {
+    pose = sample_pose(piece, pose, piece.length);
+    if (piece.curvature == 0.0 && piece.sharpness == 0.0) {
       if (!fits_straight(starts[at], piece.length, travel, own)) return false;
     } else {
       counts[at] = arc_samples(piece, shape, arc_step_);
@@ -185,14 +205,16 @@ bool FreeSpace::fits(const Pose2& from, const Curve& curve, Travel travel, OwnRo
   int stride = 1;
   while (stride < most) stride *= 2;
   for (bool coarsest = true; stride >= 1; stride /= 2, coarsest = false) {
-    for (int i = 0; i < curve.count(); ++i) {
+    for (int n = 0; n < curve.count(); ++n) {
+      // From the middle to the ends: there a turn swings out the farthest.
+      const int i = (curve.count() + (n % 2 == 0 ? n : -n - 1)) / 2;
       const auto at = static_cast<std::size_t>(i);
       const CurvePiece& piece = curve.begin()[i];
       // The multiples of the stride that no coarser stride has seen.
       for (int k = coarsest ? 0 : stride; k <= counts[at]; k += coarsest ? stride : 2 * stride) {
         if (counts[at] == 0) break;
         const double s = piece.length * k / counts[at];
-        if (!fits(advance(starts[at], piece.curvature, s), shape, own)) return false;
+        if (!fits(sample_pose(piece, starts[at], s), shape, own)) return false;
       }
     }
   }

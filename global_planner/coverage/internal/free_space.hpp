@@ -42,10 +42,10 @@ class FreeSpace {
   bool fits(const Pose2& pose, Travel travel, OwnRows own) const;
   /// The whole band that the outline sweeps along a straight line of signed `length` [m]; exact.
   bool fits_straight(const Pose2& from, double length, Travel travel, OwnRows own) const;
-  /// The outline along the whole curve. Arcs are sampled so densely that no point of the outline
-  /// moves by more than twice the margin between two samples: a sample vouches, with its margin,
-  /// for the outline halfway to its neighbours. Samples run from coarse to fine, so that a curve
-  /// that does not fit is found out early.
+  /// The outline along the whole curve. Arcs and clothoids are sampled so densely that no point of
+  /// the outline moves by more than twice the margin between two samples: a sample vouches, with
+  /// its margin, for the outline halfway to its neighbours. Samples run from coarse to fine, so
+  /// that a curve that does not fit is found out early.
   bool fits(const Pose2& from, const Curve& curve, Travel travel, OwnRows own) const;
   /// How far the outline can run straight on from `from`: the largest multiple of `step` up to
   /// `most` [m]; -1 if it does not even fit there.

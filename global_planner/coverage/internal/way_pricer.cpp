@@ -5,16 +5,19 @@
 
 namespace headland::coverage {
 
-std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind, int cusps) const {
+std::optional<DriveCost> WayPricer::price(const Path& path, LegKind kind, int cusps,
+                                          double lost_s) const {
   if (path.empty()) return DriveCost{};
+  const DriveCost lost = standing_cost(vehicle_, lost_s);
   const int within = static_cast<int>(path.segments().size()) - 1;
-  if (ground_.uniform()) return drive_cost(vehicle_, kind, path.length(), std::max(within, cusps));
+  if (ground_.uniform()) {
+    return drive_cost(vehicle_, kind, path.length(), std::max(within, cusps)) + lost;
+  }
   if (!ground_.flat() && check_slopes(vehicle_, ground_, path)) return std::nullopt;
   const Result<DriveCost> cost = path_cost(vehicle_, ground_, path, kind);
   if (!cost) return std::nullopt;
   const double standing = std::max(0, cusps - within) * vehicle_.gear_change_s;
-  const double energy = standing * vehicle_.energy.base_power_w;
-  return *cost + DriveCost{0.0, standing, energy, energy};
+  return *cost + standing_cost(vehicle_, standing) + lost;
 }
 
 double WayPricer::potential(const Point2& at) const {

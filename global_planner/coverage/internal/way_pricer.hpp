@@ -17,8 +17,9 @@ class WayPricer {
   const CostWeights& objective() const { return objective_; }
   /// What the path costs when driven as `kind`; nothing where it leaves the terrain or is steeper
   /// than the vehicle may drive. `cusps`: its changes of gear where those at its ends count too;
-  /// -1: only those within it.
-  std::optional<DriveCost> price(const Path& path, LegKind kind, int cusps = -1) const;
+  /// -1: only those within it. `lost_s`: time lost to slowing down [s].
+  std::optional<DriveCost> price(const Path& path, LegKind kind, int cusps = -1,
+                                 double lost_s = 0.0) const;
   /// What a way costs at least per metre on flat ground of the default soil.
   CostRate flat_rate(LegKind kind) const { return cost_rate(vehicle_, kind, objective_); }
   /// Added to the cost of every way, potential(from) - potential(to) makes it non-negative: what

@@ -86,6 +86,24 @@ TEST(Fishtail, ObeysTheLawsWhereverItExists) {
   EXPECT_GT(found, 2000);
 }
 
+TEST(Fishtail, BeginsAndEndsWithStraightWheelsWhereTheSteeringAsksForIt) {
+  RandomStream random(3, "fishtail");
+  int found = 0;
+  for (const double sharpness : {0.1, 0.5, 5.0}) {
+    const SmoothTurn smooth({0.5, sharpness});
+    for (int i = 0; i < 10000; ++i) {
+      const Pose2 from = test::random_pose(random, 5.0);
+      const Pose2 to = test::random_pose(random, 5.0);
+      const auto turn = fishtail(from, to, smooth);
+      if (!turn) continue;
+      ++found;
+      ASSERT_TRUE(test::obeys_the_smooth_laws(*turn, from, to, smooth)) << i;
+      ASSERT_EQ(turn->cusps(), 2);
+    }
+  }
+  EXPECT_GT(found, 2000);
+}
+
 TEST(Fishtail, FindsEveryConstructedFishtailOfLessThanACircle) {
   RandomStream random(2, "fishtail");
   for (int i = 0; i < 20000; ++i) {

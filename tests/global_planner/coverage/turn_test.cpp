@@ -7,6 +7,7 @@
 
 #include "core/base/random.hpp"
 #include "core/geometry/dubins.hpp"
+#include "core/model/steering_rate.hpp"
 
 namespace headland::coverage {
 namespace {
@@ -107,6 +108,99 @@ TEST(TurnSearch, ANarrowerHeadlandNeverMakesATurnCheaper) {
   }
   EXPECT_GE(found, 4);
   EXPECT_EQ(last, 1e9);  // at last nothing fits
+}
+
+Vehicle slow_steered() {
+  Vehicle v;
+  v.wheelbase_m = 2.0;
+  v.steering_rate_radps = 0.6;
+  v.min_turning_radius_m = kRadius;
+  v.footprint = kOutline;
+  return v;
+}
+
+// The largest step of the curvature inside a gear [1/m].
+double worst_step(const Turn& turn) {
+  double worst = 0.0;
+  double before = 0.0;
+  bool forward = true;
+  for (const CurvePiece& piece : turn.curve) {
+    if ((piece.length > 0.0) == forward) {
+      worst = std::max(worst, std::abs(piece.curvature - before));
+    }
+    before = piece.end_curvature();
+    forward = piece.length > 0.0;
+  }
+  return forward ? std::max(worst, std::abs(before)) : worst;
+}
+
+TEST(TurnSearch, WhereThereIsRoomTheSteeringFollowsAtTheSpeedOfTheLeg) {
+  const Vehicle vehicle = slow_steered();
+  const FreeSpace space = field(20.0, vehicle.footprint);
+  const TurnSearch search(space, vehicle, vehicle.turn_speed_mps);
+  for (const TurnKinds kinds : {TurnKinds{true, false, false}, TurnKinds{false, true, false},
+                                TurnKinds{false, false, true}}) {
+    const auto turn =
+        search.find(row_end(0.0, 0, 12.0), row_end(2.5, 1, 12.0), kinds, {1.0, 1.0, 10.0});
+    ASSERT_TRUE(turn);
+    EXPECT_LT(worst_step(*turn), 1e-9) << turn->curve.word();
+    EXPECT_EQ(turn->lost_s, 0.0);
+    EXPECT_GT(turn->smoothing_m, 0.0);
+    for (const CurvePiece& piece : turn->curve) {
+      EXPECT_LE(std::abs(piece.sharpness),
+                sharpness_limit(vehicle, vehicle.turn_speed_mps) * (1.0 + 1e-12));
+    }
+  }
+}
+
+TEST(TurnSearch, ALowerSpeedIsTakenWhereItCostsLessAndItsTimeIsCounted) {
+  const Vehicle vehicle = slow_steered();
+  const FreeSpace space = field(20.0, vehicle.footprint);
+  const TurnSearch search(space, vehicle, 3.0);
+  const auto at = [&](double per_second) {
+    return search.find(row_end(0.0, 0, 12.0), row_end(2.5, 1, 12.0), {}, {1.0, 1.0, per_second});
+  };
+  const auto short_one = at(0.0);
+  const auto quick_one = at(100.0);
+  ASSERT_TRUE(short_one && quick_one);
+  EXPECT_GT(short_one->lost_s, 1.0);
+  EXPECT_EQ(quick_one->lost_s, 0.0);
+  EXPECT_LT(short_one->length(), quick_one->length());
+  EXPECT_LT(worst_step(*short_one), 1e-9);
+}
+
+TEST(TurnSearch, OnlyWhereNoSmoothTurnFitsTheCurvatureSteps) {
+  const Vehicle vehicle = slow_steered();
+  int smooth = 0;
+  int found = 0;
+  for (double headland = 14.0; headland > 4.0; headland -= 0.25) {
+    const FreeSpace space = field(headland, vehicle.footprint);
+    const auto end = [&](double x, int row, Travel travel) {
+      TurnEnd e = row_end(x, row, 0.0);
+      e.free_run = space.free_run(e.out, 12.0, TurnSearch::kLeadStep, travel, {row, -1});
+      return e;
+    };
+    const TurnEnd from = end(0.0, 0, Travel::kForth);
+    const TurnEnd to = end(2.5, 1, Travel::kBack);
+    const auto turn = TurnSearch(space, vehicle, 1.0).find(from, to, {}, {1.0, 1.0, 1.0});
+    const auto plain = TurnSearch(space, kRadius).find(from, to, {}, {1.0, 1.0, 1.0});
+    EXPECT_EQ(turn.has_value(), plain.has_value()) << headland;
+    if (!turn) continue;
+    ++found;
+    smooth += worst_step(*turn) < 1e-9 ? 1 : 0;
+    EXPECT_GE(turn->length(), plain->length() - 1e-9);
+  }
+  EXPECT_GT(smooth, found / 2);
+}
+
+TEST(TurnSearch, QuickSteeringNeedsNoClothoids) {
+  Vehicle vehicle = slow_steered();
+  vehicle.steering_rate_radps = 50.0;
+  const FreeSpace space = field(20.0, vehicle.footprint);
+  const auto turn = TurnSearch(space, vehicle, 1.0)
+                        .find(row_end(0.0, 0, 12.0), row_end(2.5, 1, 12.0), {}, {1.0, 1.0, 1.0});
+  ASSERT_TRUE(turn);
+  for (const CurvePiece& piece : turn->curve) EXPECT_EQ(piece.sharpness, 0.0);
 }
 
 }  // namespace
