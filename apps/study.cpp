@@ -68,9 +68,10 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   if (!finished) return report_error(finished.error(), options);
 
   const std::string results = results_json(*finished);
-  const auto written =
-      write_report(study_report(*finished), options.out,
-                   {{"results.json", results}, {"episodes.csv", cells_csv(finished->result)}});
+  std::map<std::string, std::string> files = {{"results.json", results}};
+  const std::vector<std::string>& kept = finished->result.files;
+  if (kept.empty()) files["episodes.csv"] = cells_csv(finished->result);
+  const auto written = write_report(study_report(*finished), options.out, files, kept);
   if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", results);
