@@ -105,9 +105,10 @@ class Ledger {
 
  private:
   tl::unexpected<Error> too_many(int runs) const {
-    return fail(ErrorCode::kFileNotWritable,
-                fmt::format("holds run {} of a cell; this study has {}", runs, grid_.runs_count),
-                "choose another directory with --out, or at least as many runs", {file_, 0, ""});
+    return fail(
+        ErrorCode::kFileNotWritable,
+        fmt::format("holds {} runs of a cell or more, {} are asked for", runs, grid_.runs_count),
+        "choose another directory with --out, or more runs", {file_, 0, ""});
   }
 
   const EpisodeGrid& grid_;
