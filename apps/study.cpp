@@ -8,6 +8,7 @@
 #include "apps/output_files.hpp"
 #include "apps/report_content.hpp"
 #include "apps/study_output.hpp"
+#include "sim/lab/acfr_study.hpp"
 #include "sim/lab/crowd_study.hpp"
 #include "sim/lab/ebs221_study.hpp"
 #include "sim/lab/energy_study.hpp"
@@ -64,6 +65,9 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
       return run_tracking_study(config, jobs);
     });
   }
+  if (name == "acfr") {
+    return run_episodes_as<AcfrStudyConfig>(node, max_episodes, jobs, out, run_acfr_study);
+  }
   if (name == "crowd") {
     return run_episodes_as<CrowdStudyConfig>(node, max_episodes, jobs, out, run_crowd_study);
   }
@@ -71,7 +75,7 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: crowd, ebs221, energy, polito, tracking", where);
+              "allowed: acfr, crowd, ebs221, energy, polito, tracking", where);
 }
 
 }  // namespace

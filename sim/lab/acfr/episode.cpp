@@ -15,7 +15,7 @@ constexpr double kAhead = 8.0;         // ... and ahead
 constexpr double kFree = 3.0;          // around the robot no agent starts [m]
 constexpr double kStill = 0.05;        // slower, the robot is not at fault [m/s]
 constexpr double kStanding = 0.01;     // [m/s]
-constexpr double kSamplePeriod = 1.0;  // of the displacement [s]
+constexpr double kSamplePeriod = 5.0;  // of the displacement [s]
 
 // Distance from an agent's disc to the robot's outline [m]; negative: they overlap.
 double outline_gap(const Vehicle& vehicle, const Pose2& pose, const Point2& agent, double radius) {
@@ -138,8 +138,7 @@ class Episode {
     const VehicleState wanted = plan_.at(time + world_.step_s);
     const Command command{wanted.speed, wanted.steering, wanted.yaw_rate};
     const CrowdRobot body{centre(), robot_.speed * robot_.pose.heading(),
-                          world_.robot_radius_m + world_.slack_m,
-                          world_.robot_share_ratio};
+                          world_.robot_radius_m + world_.slack_m, world_.robot_share_ratio};
     const Point2 before = robot_.pose.position();
     robot_ = step_vehicle(drive_.vehicle, robot_, command, world_.step_s);
     crowd_.step(world_.step_s, {&body, 1});
@@ -177,8 +176,7 @@ class Episode {
         meeting.near = true;
         meeting.robot_fault = by_robot > kStill && by_robot >= by_agent;
       }
-      if (outline_gap(drive_.vehicle, robot_.pose, agent.position,
-                      world_.agent_radius_m) < 0.0) {
+      if (outline_gap(drive_.vehicle, robot_.pose, agent.position, world_.agent_radius_m) < 0.0) {
         meeting.contact = true;
         meeting.robot_contact = meeting.robot_contact || by_robot > kStill;
       }
@@ -189,8 +187,9 @@ class Episode {
     if (time < next_sample_) return;
     next_sample_ += kSamplePeriod;
     const double from = std::max(0.0, progress_ - 3.0 * kAhead);
-    outcome_.displacement_m.push_back(
-        tour_.path.project(robot_.pose.position(), from, progress_ + 3.0 * kAhead).distance);
+    const double off =
+        tour_.path.project(robot_.pose.position(), from, progress_ + 3.0 * kAhead).distance;
+    outcome_.displacements.emplace_back(time, off);
   }
 
   void check_place(double time) {

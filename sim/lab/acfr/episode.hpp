@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "core/base/clock.hpp"
@@ -96,8 +97,9 @@ struct AcfrFrame {
 struct AcfrOutcome {
   std::vector<AcfrVisit> visits;
   std::vector<AcfrInteraction> interactions;
-  std::vector<double> displacement_m;  ///< from the global path, every second
-  std::vector<double> plan_ms;         ///< of each decision, if there is a clock
+  /// Every 5 s: time [s] and distance from the global path [m].
+  std::vector<std::pair<double, double>> displacements;
+  std::vector<double> plan_ms;  ///< of each decision, if there is a clock
   double duration_s = 0.0;
   double length_m = 0.0;
   double standing_s = 0.0;  ///< slower than 0.01 m/s
