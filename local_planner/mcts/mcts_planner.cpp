@@ -14,6 +14,7 @@ using namespace mcts;
 namespace {
 
 constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
+constexpr double kStands = 0.05;         // slower than this [m/s]
 constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
 
@@ -79,6 +80,7 @@ struct MctsPlanner::Impl {
   Found found;
   bool has_tree = false;
   double planned_s = 0.0;  // when
+  double moved_s = 0.0;    // the robot moved last
   int kept = 0;
 };
 
@@ -121,10 +123,12 @@ std::vector<Point2> MctsPlanner::Impl::robot_path(const Motion& root, int action
 
 void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const Motion& root) {
   const Point2 here = scene.robot.state.pose.position();
+  MctsConfig impatient = config;
+  impatient.risk_ratio /= 1.0 + (scene.time_s - moved_s) / config.patience_s;
   if (predictor == nullptr) {
     coast(scene.agents, config.step_s, config.depth_count, prediction);
     forecasts.resize(1);
-    forecasts.front().set(prediction, scene.agents, here, radius, config);
+    forecasts.front().set(prediction, scene.agents, here, radius, impatient);
     return;
   }
   const bool reacts = predictor->reacts();
@@ -136,7 +140,7 @@ void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const Motion& roo
     std::vector<Point2> path;
     if (reacts) path = robot_path(root, turn * Manoeuvres::kSpeeds + speed);
     predictor->predict(path, config.step_s, config.depth_count, prediction);
-    forecasts[i].set(prediction, scene.agents, here, radius, config);
+    forecasts[i].set(prediction, scene.agents, here, radius, impatient);
   }
 }
 
@@ -212,6 +216,7 @@ void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const 
   if (!is_finite(scene, goal) || !(goal.speed_mps > 0.0)) {
     return brake(d.vehicle, scene.robot.state, scene.time_s, LocalStatus::kBadInput, plan);
   }
+  if (!d.has_tree || std::abs(scene.robot.state.speed) > kStands) d.moved_s = scene.time_s;
   d.set_task(scene, goal);
   VehicleState local = scene.robot.state;
   local.pose.x = 0.0;

@@ -23,19 +23,20 @@ struct MctsConfig {
   MctsCost cost = MctsCost::kKinematic;
   double step_s = 0.4;
   int depth_count = 12;
-  double exploration_ratio = 0.3;
+  double exploration_ratio = 0.1;
   double widening_ratio = 2.0;
   double widening_exponent_ratio = 0.45;
   double lookahead_m = 9.0;
   int agents_count = 16;
   double view_m = 12.0;
-  double clearance_m = 0.7;
-  double risk_ratio = 6.0;
+  double clearance_m = 0.42;
+  double risk_ratio = 10.0;
+  double patience_s = 3.0;
   double contact_s = 60.0;
-  double trust_s = 2.5;
+  double trust_s = 4.0;
   double reverse_ratio = 2.0;
-  double steering_ratio = 0.2;
-  double pace_ratio = 0.0;
+  double steering_ratio = 1.5;
+  double pace_ratio = 0.75;
   double influence_m = 3.0;
   double match_m = 0.25;
   double stale_s = 0.5;
@@ -58,6 +59,8 @@ struct MctsConfig {
       "Nearer to an agent than this, outline to outline, is a risk [m]");
     v("risk_ratio", risk_ratio, config::kNonNegative,
       "A second at the brink of contact costs this many seconds");
+    v("patience_s", patience_s, config::kPositive,
+      "After standing so long, risk counts half, after twice as long a third: agents give way [s]");
     v("contact_s", contact_s, config::kNonNegative, "What a contact costs [s]");
     v("trust_s", trust_s, config::kPositive,
       "Risk counts less the farther ahead: agents react; it falls to 1/e in this time [s]");

@@ -25,7 +25,7 @@ struct AcfrStudyConfig {
   int seed = 1;
   int runs_count = 24;         ///< iterations of each cell: 3 scenarios of 8 in the paper
   int tours_count = 8;         ///< iterations of a scenario
-  int iterations_count = 500;  ///< of the tree search, a decision
+  int iterations_count = 1000;  ///< of the tree search, a decision
   std::vector<LocalPlannerKind> planners = {LocalPlannerKind::kMcts};
   double dense_m2 = 10.0;  ///< area per agent
   double sparse_m2 = 50.0;

@@ -9,18 +9,27 @@
 #include "core/model/vehicle.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
+#include "local_planner/prediction/agent_filter.hpp"
+#include "local_planner/prediction/reciprocal.hpp"
 
 namespace headland {
 
 enum class LocalPlannerKind { kMcts };
+enum class PredictorKind { kConstantVelocity, kReciprocal };
 
 /// Settings of all local planners.
 struct LocalPlannersConfig {
   MctsConfig mcts;
+  PredictorKind predictor = PredictorKind::kReciprocal;
+  AgentFilterConfig constant_velocity;
+  ReciprocalConfig reciprocal;
 
   template <class V>
   void visit(V& v) {
     v("mcts", mcts, "Monte Carlo tree search");
+    v("predictor", predictor, "How the tree search expects agents to move");
+    v("constant_velocity", constant_velocity, "Agents that go straight on");
+    v("reciprocal", reciprocal, "Agents that give way to each other and to the robot");
   }
 };
 
@@ -34,4 +43,11 @@ template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
       {headland::LocalPlannerKind::kMcts, "mcts"}};
+};
+
+template <>
+struct headland::config::EnumNames<headland::PredictorKind> {
+  static constexpr std::pair<headland::PredictorKind, std::string_view> values[] = {
+      {headland::PredictorKind::kConstantVelocity, "constant_velocity"},
+      {headland::PredictorKind::kReciprocal, "reciprocal"}};
 };
