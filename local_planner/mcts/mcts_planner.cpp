@@ -13,10 +13,9 @@ using namespace mcts;
 
 namespace {
 
-constexpr double kPlanStep = 0.1;       // of the plans handed out [s]
-constexpr int kLooksBetweenClocks = 64; // a clock is read every so many nodes
-constexpr double kFinalRoom = 1.0;      // the next place is the local goal if it is no farther
-                                        // than the lookahead and this [m]
+constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
+constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
+constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
 
 // Constant velocities as they were observed, with what is known of their noise.
 void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& prediction) {
@@ -95,17 +94,12 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
   task.wanted = goal.speed_mps;
   task.final = true;
   Point2 place = goal.place;
-  if (goal.path != nullptr && !goal.path->empty()) {
-    const double end = goal.s + config.lookahead_m;
-    const Point2 ahead = goal.path->at(end).pose.position();
-    const bool far = (goal.place - here).norm() > config.lookahead_m + kFinalRoom;
-    if (far && end < goal.path->length()) {
-      place = ahead;
-      task.final = false;
-    }
+  if (goal.path != nullptr && !goal.path->empty() && goal.s + config.lookahead_m < goal.place_s) {
+    place = goal.path->at(goal.s + config.lookahead_m).pose.position();
+    task.final = false;
   }
   task.goal = place - here;
-  task.accuracy = task.final ? std::max(0.0, goal.accuracy_m) : 0.5;
+  task.accuracy = task.final ? kAim * std::max(0.0, goal.accuracy_m) : 0.5;
   const double distance = task.goal.norm();
   task.scale = config.cost == MctsCost::kSeed ? std::max(1.0, distance * distance) : 5.0;
 }
@@ -117,11 +111,10 @@ std::vector<Point2> MctsPlanner::Impl::robot_path(const Motion& root, int action
   for (int k = 0; k < config.depth_count; ++k) {
     const bool slower = cluster_of(action) == Manoeuvres::kTurns;
     const int heading = moves.towards(at, task.goal.x(), task.goal.y(), task.wanted);
-    const Action next = slower ? moves.braking(at)
-                               : moves.action(at, k == 0 ? action : heading, task.wanted);
+    const Action next =
+        slower ? moves.braking(at) : moves.action(at, k == 0 ? action : heading, task.wanted);
     at = moves.drive(at, next);
-    path.push_back(Point2(at.x + centre * at.c, at.y + centre * at.s) +
-                   forecasts.front().origin());
+    path.push_back(Point2(at.x + centre * at.c, at.y + centre * at.s) + forecasts.front().origin());
   }
   return path;
 }

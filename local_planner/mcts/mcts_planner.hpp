@@ -35,6 +35,7 @@ struct MctsConfig {
   double trust_s = 2.5;
   double reverse_ratio = 2.0;
   double steering_ratio = 0.2;
+  double pace_ratio = 0.0;
   double influence_m = 3.0;
   double match_m = 0.25;
   double stale_s = 0.5;
@@ -63,6 +64,8 @@ struct MctsConfig {
     v("reverse_ratio", reverse_ratio, config::Range{1.0, 100.0}, "Cost of time in reverse gear");
     v("steering_ratio", steering_ratio, config::kNonNegative,
       "Seconds for turning the steering from lock to lock");
+    v("pace_ratio", pace_ratio, config::kNonNegative,
+      "Seconds for speeding up or braking by the wanted speed");
     v("influence_m", influence_m, config::kPositive, "d of (003) Eq. 2 [m]");
     v("match_m", match_m, config::kPositive,
       "epsilon of (003) Eq. 3: the tree is kept if all agents are this near to where it had them "

@@ -66,13 +66,12 @@ void Forecast::set(const Prediction& prediction, std::span<const Agent> now, con
   }
   weight_.resize(static_cast<std::size_t>(levels_) + 1);
   for (int level = 0; level <= levels_; ++level) {
-    weight_[static_cast<std::size_t>(level)] = static_cast<float>(
-        config.risk_ratio * std::exp(-level * config.step_s / config.trust_s));
+    weight_[static_cast<std::size_t>(level)] =
+        static_cast<float>(config.risk_ratio * std::exp(-level * config.step_s / config.trust_s));
   }
 }
 
-StepRisk Forecast::step(int level, double ax, double ay, double bx, double by,
-                        double speed) const {
+StepRisk Forecast::step(int level, double ax, double ay, double bx, double by, double speed) const {
   using Lanes = Eigen::Array4f;
   const auto lanes = [](const std::vector<float>& values, std::size_t at) {
     return Eigen::Map<const Lanes>(values.data() + at);
@@ -91,8 +90,7 @@ StepRisk Forecast::step(int level, double ax, double ay, double bx, double by,
     const Lanes dy = lanes(y_, before + i) - fay;
     const Lanes ex = lanes(x_, after + i) - fbx - dx;
     const Lanes ey = lanes(y_, after + i) - fby - dy;
-    const Lanes t =
-        (-(dx * ex + dy * ey) / (ex * ex + ey * ey + 1e-9F)).max(0.0F).min(1.0F);
+    const Lanes t = (-(dx * ex + dy * ey) / (ex * ex + ey * ey + 1e-9F)).max(0.0F).min(1.0F);
     const Lanes nx = dx + t * ex;
     const Lanes ny = dy + t * ey;
     const Lanes inside =

@@ -39,13 +39,12 @@ Manoeuvres::Manoeuvres(const Vehicle& vehicle, double step_s)
       acceleration_(vehicle.acceleration_mps2),
       turn_rate_(ackermann_ ? vehicle.steering_rate_radps : vehicle.yaw_acceleration_radps2),
       track_(vehicle.track_width_m),
-      top_speed_(std::max({vehicle.work_speed_mps, vehicle.transit_speed_mps,
-                           vehicle.turn_speed_mps})) {
+      top_speed_(
+          std::max({vehicle.work_speed_mps, vehicle.transit_speed_mps, vehicle.turn_speed_mps})) {
   // A differential vehicle's wheels go in opposite directions at the top speed, no faster.
   turn_limit_ = ackermann_ ? vehicle.max_steering_rad() : 2.0 * top_speed_ / track_;
   radius_ = ackermann_ ? wheelbase_ / std::tan(turn_limit_) : 0.0;
-  const double reverse =
-      vehicle.reverse_speed_mps > 0.0 ? vehicle.reverse_speed_mps : top_speed_;
+  const double reverse = vehicle.reverse_speed_mps > 0.0 ? vehicle.reverse_speed_mps : top_speed_;
   reverse_speed_ = vehicle.can_reverse ? reverse : 0.0;
   turn_rate_ = std::min(turn_rate_, 2.0 * turn_limit_ / step_s);
 }
@@ -83,9 +82,9 @@ Action Manoeuvres::action(const Motion& from, int number, double wanted) const {
                                          : std::max(-reverse_speed_, from.speed - change);
       break;
     case 2:
-      action.speed = from.speed < -kStill ? std::min(0.0, from.speed + change)
-                                          : std::min(std::max(wanted, from.speed - change),
-                                                     from.speed + change);
+      action.speed = from.speed < -kStill
+                         ? std::min(0.0, from.speed + change)
+                         : std::min(std::max(wanted, from.speed - change), from.speed + change);
       break;
     default:
       action.speed = std::min(from.speed, std::max(wanted, from.speed - change));
@@ -113,10 +112,14 @@ int Manoeuvres::towards(const Motion& from, double place_x, double place_y, doub
   }
   const double part = (turn - from.turn) / (turn_rate_ * step_s_);
   int index = 2;
-  if (part > 2.0 / 3.0) index = 4;
-  else if (part > 1.0 / 6.0) index = 3;
-  else if (part < -2.0 / 3.0) index = 0;
-  else if (part < -1.0 / 6.0) index = 1;
+  if (part > 2.0 / 3.0)
+    index = 4;
+  else if (part > 1.0 / 6.0)
+    index = 3;
+  else if (part < -2.0 / 3.0)
+    index = 0;
+  else if (part < -1.0 / 6.0)
+    index = 1;
   // A differential vehicle that looks away turns first.
   const double speed = !ackermann_ && ahead < 0.5 * std::sqrt(squared) ? 0.0 : wanted;
   const double tolerance = 0.3 * acceleration_ * step_s_;
@@ -126,8 +129,8 @@ int Manoeuvres::towards(const Motion& from, double place_x, double place_y, doub
 
 Action Manoeuvres::braking(const Motion& from) const {
   const double change = acceleration_ * step_s_;
-  const double speed = from.speed > 0.0 ? std::max(0.0, from.speed - change)
-                                        : std::min(0.0, from.speed + change);
+  const double speed =
+      from.speed > 0.0 ? std::max(0.0, from.speed - change) : std::min(0.0, from.speed + change);
   if (ackermann_) return {speed, from.turn};
   return {speed, std::abs(from.speed) > 1e-6 ? from.turn * speed / from.speed : 0.0};
 }
@@ -137,11 +140,9 @@ Motion Manoeuvres::drive(const Motion& from, const Action& action) const {
   to.speed = action.speed;
   to.turn = action.turn;
   // Each changes at its fastest rate and then holds, so that the mean lies nearer to the end.
-  const double speed_time =
-      std::min(step_s_, std::abs(to.speed - from.speed) / acceleration_);
+  const double speed_time = std::min(step_s_, std::abs(to.speed - from.speed) / acceleration_);
   const double turn_time = std::min(step_s_, std::abs(to.turn - from.turn) / turn_rate_);
-  const double mean_speed =
-      to.speed + 0.5 * (from.speed - to.speed) * speed_time / step_s_;
+  const double mean_speed = to.speed + 0.5 * (from.speed - to.speed) * speed_time / step_s_;
   const double mean_turn = to.turn + 0.5 * (from.turn - to.turn) * turn_time / step_s_;
   const double distance = mean_speed * step_s_;
   // tan by its series: within 3e-4 up to 0.7 rad.

@@ -104,13 +104,13 @@ Tree::Judged Tree::judge(const Task& task, int first, int level, const Motion& f
     judged.blocked = !task.map->disc_passes(a + origin, b + origin, task.radius);
   }
   const double faster = std::max(std::abs(from.speed), std::abs(to.speed));
-  const StepRisk risk =
-      forecast_of(task, first).step(level, a.x(), a.y(), b.x(), b.y(), faster);
+  const StepRisk risk = forecast_of(task, first).step(level, a.x(), a.y(), b.x(), b.y(), faster);
   judged.contact = risk.contact;
   const double gear = to.speed < -1e-3 ? config.reverse_ratio : 1.0;
-  judged.cost = config.step_s * (gear + risk.cost) + config.steering_ratio *
-                                                         std::abs(to.turn - from.turn) /
-                                                         (2.0 * task.moves->turn_limit());
+  const double steering = std::abs(to.turn - from.turn) / (2.0 * task.moves->turn_limit());
+  const double pace = std::abs(to.speed - from.speed) / task.wanted;
+  judged.cost = config.step_s * (gear + risk.cost) + config.steering_ratio * steering +
+                config.pace_ratio * pace;
   judged.arrived =
       task.final && (Point2(to.x, to.y) - task.goal).squaredNorm() <= task.accuracy * task.accuracy;
   return judged;
@@ -124,9 +124,9 @@ double Tree::roll(const Task& task, int first, int level, Motion at, double cost
     const Action action =
         kind == Rollout::kBrake
             ? task.moves->braking(at)
-            : task.moves->action(
-                  at, task.moves->towards(at, task.goal.x(), task.goal.y(), task.wanted),
-                  task.wanted);
+            : task.moves->action(at,
+                                 task.moves->towards(at, task.goal.x(), task.goal.y(), task.wanted),
+                                 task.wanted);
     const Motion to = task.moves->drive(at, action);
     const Judged judged = judge(task, first, level, at, to);
     if (record != nullptr) {
@@ -266,8 +266,8 @@ void Tree::expand(const Task& task) {
       return hand_up(task, n);
     }
     if (node(n).closed || node(n).level >= config.depth_count) return hand_up(task, n);
-    const int allowed = static_cast<int>(
-        config.widening_ratio * std::pow(node(n).visits, config.widening_exponent_ratio));
+    const int allowed = static_cast<int>(config.widening_ratio *
+                                         std::pow(node(n).visits, config.widening_exponent_ratio));
     bool added = false;
     while (!added && node(n).children < std::min(allowed, Manoeuvres::kCount) &&
            node(n).tried < Manoeuvres::kCount) {
