@@ -143,6 +143,7 @@ StudyResult result_of(const CrowdStudyConfig& config, const std::vector<Cell>& c
   }
   add_crowd_tables(result);
   add_paired_table(result, outcomes);
+  add_people_plot(result, outcomes);
   return result;
 }
 

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # A study that is killed, or stopped with Ctrl-C, goes on where it was, and ends with the same bytes.
 source "$(dirname "$0")/lib.sh"
-study() { "$headland" study config/studies/crowd.yaml --max-episodes "${runs:-30}" --out "$scratch/$1" "${@:2}"; }
+command=("$headland" study config/studies/crowd.yaml --max-episodes 20)
+study() { "${command[@]}" --out "$scratch/$1" "${@:2}"; }
 episodes() { grep -vc '^#\|^cell' "$scratch/$1/episodes.csv" || true; }
 # begin NAME SIGNAL: ends a study by a signal when it has at least two episodes; sets $code.
 begin() {
-  study "$1" >/dev/null 2>"$scratch/$1.stderr" &
+  "${command[@]}" --out "$scratch/$1" >/dev/null 2>"$scratch/$1.stderr" &
   local pid=$!
   until [ -e "$scratch/$1/episodes.csv" ] && [ "$(episodes "$1")" -ge 2 ]; do sleep 0.02; done
   kill -"$2" "$pid"

@@ -9,6 +9,9 @@
 #include "sim/lab/statistics.hpp"
 
 namespace headland {
+
+using namespace crowd_protocol;
+
 namespace {
 
 using Row = std::vector<std::string>;
@@ -130,6 +133,27 @@ void add_paired_table(StudyResult& result, const std::vector<std::vector<CrowdOu
                           fmt::format("{:.2g}", mcnemar(only_first, only_other))});
   }
   result.tables.push_back(std::move(table));
+}
+
+void add_people_plot(StudyResult& result, const std::vector<std::vector<CrowdOutcome>>& outcomes) {
+  Plot plot{"Success by the number of people", "people", "success [%]"};
+  for (std::size_t c = 0; c < outcomes.size(); ++c) {
+    PlotSeries series{result.cells[c].name};
+    for (int people = kLeastPeople; people <= kMostPeople; ++people) {
+      int count = 0;
+      double hits = 0.0;
+      for (const CrowdOutcome& o : outcomes[c]) {
+        if (static_cast<int>(o.people_count) != people) continue;
+        ++count;
+        hits += o.success_count;
+      }
+      if (count == 0) continue;
+      series.x.push_back(people);
+      series.y.push_back(100.0 * hits / count);
+    }
+    plot.series.push_back(std::move(series));
+  }
+  result.plots.push_back(std::move(plot));
 }
 
 }  // namespace headland

@@ -50,6 +50,8 @@ TEST(CrowdStudy, HasACellForEachPlannerWithPeopleWhoSeeAndWhoDoNot) {
   for (const StudyTable& table : result->tables) {
     for (const auto& row : table.rows) EXPECT_EQ(row.size(), table.header.size()) << table.title;
   }
+  ASSERT_EQ(result->plots.size(), 1U);
+  EXPECT_EQ(result->plots.front().series.size(), result->cells.size());
   EXPECT_TRUE(result->files.empty());
 }
 
