@@ -198,7 +198,7 @@ void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) const {
 
 MctsPlanner::MctsPlanner(const Vehicle& vehicle, const MctsConfig& config,
                          std::unique_ptr<Predictor> predictor)
-    : impl_(std::make_unique<Impl>(vehicle, config, std::move(predictor))) {}
+    : LocalPlanner(vehicle), impl_(std::make_unique<Impl>(vehicle, config, std::move(predictor))) {}
 MctsPlanner::~MctsPlanner() = default;
 
 int MctsPlanner::kept_nodes() const { return impl_->kept; }
@@ -213,9 +213,6 @@ void MctsPlanner::do_observe(const LocalScene& scene) {
 void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
                           LocalPlan& plan) {
   Impl& d = *impl_;
-  if (!is_finite(scene, goal) || !(goal.speed_mps > 0.0)) {
-    return brake(d.vehicle, scene.robot.state, scene.time_s, LocalStatus::kBadInput, plan);
-  }
   if (!d.has_tree || std::abs(scene.robot.state.speed) > kStands) d.moved_s = scene.time_s;
   d.set_task(scene, goal);
   VehicleState local = scene.robot.state;

@@ -7,6 +7,7 @@
 
 #include "core/config/visit.hpp"
 #include "core/model/vehicle.hpp"
+#include "local_planner/fail_safe/fail_safe_planner.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
 #include "local_planner/prediction/agent_filter.hpp"
@@ -14,7 +15,7 @@
 
 namespace headland {
 
-enum class LocalPlannerKind { kMcts };
+enum class LocalPlannerKind { kMcts, kFailSafe };
 enum class PredictorKind { kConstantVelocity, kReciprocal };
 
 /// Settings of all local planners.
@@ -23,6 +24,7 @@ struct LocalPlannersConfig {
   PredictorKind predictor = PredictorKind::kReciprocal;
   AgentFilterConfig constant_velocity;
   ReciprocalConfig reciprocal;
+  FailSafePlannerConfig fs;
 
   template <class V>
   void visit(V& v) {
@@ -30,6 +32,7 @@ struct LocalPlannersConfig {
     v("predictor", predictor, "How the tree search expects agents to move");
     v("constant_velocity", constant_velocity, "Agents that go straight on");
     v("reciprocal", reciprocal, "Agents that give way to each other and to the robot");
+    v("fs", fs, "Following the path and waiting");
   }
 };
 
@@ -42,7 +45,7 @@ std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
 template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
-      {headland::LocalPlannerKind::kMcts, "mcts"}};
+      {headland::LocalPlannerKind::kMcts, "mcts"}, {headland::LocalPlannerKind::kFailSafe, "fs"}};
 };
 
 template <>
