@@ -30,7 +30,7 @@ FilteredAgent AgentFilter::update(const FilteredAgent* before, const Agent& seen
     return now;
   }
   const double dt = time_s - before->seen_s;
-  const double q = config_.acceleration_m2ps3;
+  const double q = config_.acceleration_density;
   const double variance = before->variance_at(dt, q);
   const double cross = before->cross + dt * before->velocity_variance + 0.5 * q * dt * dt;
   const double velocity_variance = before->velocity_variance + q * dt;

@@ -13,13 +13,13 @@ namespace headland {
 
 /// How agents' velocities are found from sights of them.
 struct AgentFilterConfig {
-  double acceleration_m2ps3 = 0.5;
+  double acceleration_density = 0.5;
   double noise_m = 0.05;
   double forget_s = 1.0;
 
   template <class V>
   void visit(V& v) {
-    v("acceleration_m2ps3", acceleration_m2ps3, config::kPositive,
+    v("acceleration_density", acceleration_density, config::kPositive,
       "Spectral density of the agents' acceleration [m2/s3]");
     v("noise_m", noise_m, config::kPositive, "A sight is no more exact than this, per axis [m]");
     v("forget_s", forget_s, config::kPositive, "Agents not seen for so long are forgotten [s]");

@@ -12,7 +12,7 @@ void ConstantVelocityPredictor::predict(std::span<const Point2>, double step_s, 
     for (int k = 1; k <= steps; ++k) {
       const double t = k * step_s;
       prediction.mean.push_back(known.agent.position + t * known.agent.velocity);
-      prediction.covariance.push_back(known.variance_at(t, filter_.config().acceleration_m2ps3) *
+      prediction.covariance.push_back(known.variance_at(t, filter_.config().acceleration_density) *
                                       Eigen::Matrix2d::Identity());
     }
   }

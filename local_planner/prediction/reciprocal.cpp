@@ -91,7 +91,7 @@ void ReciprocalPredictor::predict(std::span<const Point2> robot_path, double ste
       const std::size_t cell = prediction.index(static_cast<int>(i), k);
       prediction.mean[cell] = bodies_[i].position;
       prediction.covariance[cell] =
-          agents[i].variance_at((k + 1) * step_s, config_.filter.acceleration_m2ps3) *
+          agents[i].variance_at((k + 1) * step_s, config_.filter.acceleration_density) *
           Eigen::Matrix2d::Identity();
     }
   }
