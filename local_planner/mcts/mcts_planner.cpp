@@ -190,8 +190,9 @@ void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) const {
   plan.states.assign(1, scene.robot.state);
   for (const Action& action : found.actions) {
     for (int i = 0; i < parts; ++i) {
-      plan.states.push_back(
-          step_vehicle(vehicle, plan.states.back(), moves.command(action), plan.step_s));
+      const VehicleState& now = plan.states.back();
+      plan.states.push_back(step_vehicle(
+          vehicle, now, moves.command(vehicle, now, action, plan.step_s), plan.step_s));
     }
   }
 }

@@ -37,6 +37,8 @@ struct MctsConfig {
   double reverse_ratio = 2.0;
   double steering_ratio = 1.5;
   double pace_ratio = 0.75;
+  double progress_ratio = 0.05;
+  double detour_s = 2.0;
   double influence_m = 3.0;
   double match_m = 0.25;
   double stale_s = 0.5;
@@ -69,6 +71,11 @@ struct MctsConfig {
       "Seconds for turning the steering from lock to lock");
     v("pace_ratio", pace_ratio, config::kNonNegative,
       "Seconds for speeding up or braking by the wanted speed");
+    v("progress_ratio", progress_ratio, config::kNonNegative,
+      "Each second counts this part of the time that is still needed: what can be done is done "
+      "now");
+    v("detour_s", detour_s, config::kNonNegative,
+      "What it costs to go around somebody who stands beyond the last step [s]");
     v("influence_m", influence_m, config::kPositive, "d of (003) Eq. 2 [m]");
     v("match_m", match_m, config::kPositive,
       "epsilon of (003) Eq. 3: the tree is kept if all agents are this near to where it had them "

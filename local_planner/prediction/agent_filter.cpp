@@ -3,76 +3,129 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace headland {
 namespace {
 
-constexpr double kFirstSpeed = 1.0;  // standard deviation of an unknown velocity [m/s]
+constexpr double kForgetAfter = 1.0;     // [s]
+constexpr double kFastest = 15.0;        // nobody on a farm is faster [m/s]
+constexpr double kFarthest = 1e7;        // [m]
+constexpr double kSettled = 0.5;         // until then accelerations are the filter's own [s]
+constexpr double kSeenSpeedNoise = 0.5;  // of an observed velocity, per axis [m/s]
 
-bool usable(const Agent& agent) {
-  return agent.position.allFinite() && std::isfinite(agent.radius_m) && agent.radius_m >= 0.0;
+bool is_usable(const Agent& agent) {
+  return agent.position.allFinite() && agent.velocity.allFinite() &&
+         agent.position.cwiseAbs().maxCoeff() < kFarthest && std::isfinite(agent.radius_m) &&
+         std::isfinite(agent.noise_m);
 }
-
-bool by_id(const FilteredAgent& a, const FilteredAgent& b) { return a.agent.id < b.agent.id; }
 
 }  // namespace
 
-FilteredAgent AgentFilter::update(const FilteredAgent* before, const Agent& seen,
-                                  double time_s) const {
-  const double noise = std::max(config_.noise_m, std::isfinite(seen.noise_m) ? seen.noise_m : 0.0);
-  FilteredAgent now;
-  now.agent = seen;
-  now.seen_s = time_s;
-  if (before == nullptr) {
-    if (!seen.velocity.allFinite()) now.agent.velocity.setZero();
-    now.variance = noise * noise;
-    now.velocity_variance = kFirstSpeed * kFirstSpeed;
-    return now;
+double VelocityWalk::of(AgentKind kind) const {
+  switch (kind) {
+    case AgentKind::kSheep:
+      return sheep_mps;
+    case AgentKind::kCattle:
+      return cattle_mps;
+    case AgentKind::kDog:
+      return dog_mps;
+    case AgentKind::kVehicle:
+      return vehicle_mps;
+    case AgentKind::kPerson:
+      break;
   }
-  const double dt = time_s - before->seen_s;
-  const double q = config_.acceleration_m2ps3;
-  const double variance = before->variance_at(dt, q);
-  const double cross = before->cross + dt * before->velocity_variance + 0.5 * q * dt * dt;
-  const double velocity_variance = before->velocity_variance + q * dt;
-  const double gain = variance / (variance + noise * noise);
-  const double velocity_gain = cross / (variance + noise * noise);
-  const Point2 expected = before->agent.position + dt * before->agent.velocity;
-  const Point2 innovation = seen.position - expected;
-  now.agent.position = expected + gain * innovation;
-  now.agent.velocity = before->agent.velocity + velocity_gain * innovation;
-  now.variance = (1.0 - gain) * variance;
-  now.cross = (1.0 - gain) * cross;
-  now.velocity_variance = velocity_variance - velocity_gain * cross;
-  return now;
+  return person_mps;
+}
+
+Eigen::Matrix2d FilteredAgent::spread_after(double t, double walk) const {
+  const double variance = position_variance + 2.0 * t * covariance + t * t * velocity_variance +
+                          walk * walk * t * t * t / 3.0;
+  return variance * Eigen::Matrix2d::Identity();
+}
+
+FilteredAgent AgentFilter::first_sight(const Agent& agent) const {
+  FilteredAgent first{agent.id, agent.kind, agent.radius_m, agent.position};
+  const double noise = std::max(agent.noise_m, config_.least_noise_m);
+  first.position_variance = noise * noise;
+  first.velocity_variance = config_.first_speed_mps * config_.first_speed_mps;
+  const double speed = agent.velocity.norm();
+  if (speed > 0.0 && speed < kFastest) {
+    first.velocity = agent.velocity;
+    first.velocity_variance = std::min(first.velocity_variance, kSeenSpeedNoise * kSeenSpeedNoise);
+  }
+  first.first_s = now_;
+  first.last_s = now_;
+  return first;
+}
+
+FilteredAgent AgentFilter::updated(FilteredAgent known, const FilteredAgent& seen) const {
+  const double dt = now_ - known.last_s;
+  const Point2 ahead = known.position_after(dt);
+  const double noise_variance = seen.position_variance;
+  const double reachable =
+      kFastest * dt + 5.0 * std::sqrt(noise_variance + known.position_variance);
+  const bool is_same = dt <= kForgetAfter && seen.kind == known.kind &&
+                       (seen.position - known.position).norm() <= reachable;
+  if (!is_same) return seen;
+  const double walk = config_.walk.of(known.kind);
+  const double q = walk * walk;
+  double& pp = known.position_variance;
+  double& pv = known.covariance;
+  double& vv = known.velocity_variance;
+  pp += dt * (2.0 * pv + dt * (vv + q * dt / 3.0));
+  pv += dt * (vv + q * dt / 2.0);
+  vv += q * dt;
+  const double position_gain = pp / (pp + noise_variance);
+  const double velocity_gain = pv / (pp + noise_variance);
+  const Point2 error = seen.position - ahead;
+  // The acceleration is how far the velocity is ahead of its own low-pass.
+  const Point2 slow = known.velocity - config_.acceleration_s * known.acceleration;
+  known.position = ahead + position_gain * error;
+  known.velocity += velocity_gain * error;
+  vv -= velocity_gain * pv;
+  pv *= 1.0 - position_gain;
+  pp *= 1.0 - position_gain;
+  if (now_ - known.first_s > kSettled) {
+    const double kept = std::exp(-dt / config_.acceleration_s);
+    known.acceleration = kept * (known.velocity - slow) / config_.acceleration_s;
+  }
+  known.radius_m = seen.radius_m;
+  known.last_s = now_;
+  return known;
 }
 
 void AgentFilter::observe(std::span<const Agent> agents, double time_s) {
-  if (!std::isfinite(time_s) || (!known_.empty() && time_s < time_s_)) return;
-  time_s_ = time_s;
-  std::sort(known_.begin(), known_.end(), by_id);
-  next_.clear();
-  for (const Agent& seen : agents) {
-    if (!usable(seen)) continue;
-    FilteredAgent key;
-    key.agent.id = seen.id;
-    const auto found = std::lower_bound(known_.begin(), known_.end(), key, by_id);
-    const bool known = found != known_.end() && found->agent.id == seen.id &&
-                       time_s - found->seen_s <= config_.forget_s;
-    next_.push_back(update(known ? &*found : nullptr, seen, time_s));
+  if (std::isfinite(time_s) && (known_.empty() || time_s > now_)) now_ = time_s;
+  seen_.clear();
+  for (const Agent& agent : agents) {
+    if (is_usable(agent)) seen_.push_back(first_sight(agent));
   }
-  std::sort(next_.begin(), next_.end(), by_id);
-  const auto twice = std::unique(next_.begin(), next_.end(), [](const auto& a, const auto& b) {
-    return a.agent.id == b.agent.id;
+  order_.resize(seen_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::sort(order_.begin(), order_.end(), [this](int a, int b) {
+    const int id_a = seen_[static_cast<std::size_t>(a)].id;
+    const int id_b = seen_[static_cast<std::size_t>(b)].id;
+    return id_a < id_b || (id_a == id_b && a < b);
   });
-  next_.erase(twice, next_.end());
-  current_ = next_.size();
-  // Who is hidden for a moment is remembered.
-  for (const FilteredAgent& old : known_) {
-    if (time_s - old.seen_s > config_.forget_s) continue;
-    const auto end = next_.begin() + static_cast<std::ptrdiff_t>(current_);
-    if (!std::binary_search(next_.begin(), end, old, by_id)) next_.push_back(old);
+  // Those known and those seen, both by id, side by side.
+  next_.clear();
+  auto known = known_.begin();
+  const auto keep_unseen_below = [&](int id) {
+    for (; known != known_.end() && known->id < id; ++known) {
+      if (now_ - known->last_s <= kForgetAfter) next_.push_back(*known);
+    }
+  };
+  for (const int slot : order_) {
+    FilteredAgent& seen = seen_[static_cast<std::size_t>(slot)];
+    if (!next_.empty() && next_.back().id == seen.id) continue;
+    keep_unseen_below(seen.id);
+    if (known != known_.end() && known->id == seen.id) seen = updated(*known++, seen);
+    next_.push_back(seen);
   }
-  known_.swap(next_);
+  keep_unseen_below(std::numeric_limits<int>::max());
+  std::swap(known_, next_);
 }
 
 }  // namespace headland

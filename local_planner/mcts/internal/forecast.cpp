@@ -12,7 +12,14 @@ namespace headland::mcts {
 namespace {
 
 constexpr float kFarAway = 1e6F;    // where the padding stands [m]
+constexpr double kLingers = 0.5;    // slower agents may still be there later [m/s]
 constexpr double kStanding = 0.05;  // slower, the robot touches nobody: it is touched [m/s]
+
+using Lanes = Eigen::Array4f;
+
+Eigen::Map<const Lanes> lanes(const std::vector<float>& values, std::size_t at) {
+  return Eigen::Map<const Lanes>(values.data() + at);
+}
 
 }  // namespace
 
@@ -45,6 +52,7 @@ void Forecast::set(const Prediction& prediction, std::span<const Agent> now, con
   uncertainty_.assign(cells, 0.0F);
   rim_.assign(static_cast<std::size_t>(padded_), 0.0F);
   scale_.assign(static_cast<std::size_t>(padded_), 1.0F);
+  lingers_.assign(static_cast<std::size_t>(padded_), 0.0F);
   ids_.clear();
   for (int i = 0; i < count_; ++i) {
     const int a = chosen[static_cast<std::size_t>(i)];
@@ -54,6 +62,12 @@ void Forecast::set(const Prediction& prediction, std::span<const Agent> now, con
     const double rim = reach + config.clearance_m;
     rim_[column] = static_cast<float>(rim * rim);
     scale_[column] = static_cast<float>(1.0 / (rim * rim - reach * reach));
+    if (levels_ > 0) {
+      const Point2 way =
+          prediction.mean[prediction.index(a, levels_ - 1)] - start[static_cast<std::size_t>(a)];
+      const double speed = way.norm() / (levels_ * prediction.step_s);
+      lingers_[column] = static_cast<float>(std::max(0.0, 1.0 - speed / kLingers));
+    }
     for (int level = 0; level <= levels_; ++level) {
       const Point2 p = level == 0 ? start[static_cast<std::size_t>(a)]
                                   : prediction.mean[prediction.index(a, level - 1)];
@@ -64,6 +78,7 @@ void Forecast::set(const Prediction& prediction, std::span<const Agent> now, con
       uncertainty_[row(level) + column] = static_cast<float>(std::sqrt(std::max(0.0, det)));
     }
   }
+  anyone_lingers_ = std::any_of(lingers_.begin(), lingers_.end(), [](float l) { return l > 0.0F; });
   weight_.resize(static_cast<std::size_t>(levels_) + 1);
   for (int level = 0; level <= levels_; ++level) {
     weight_[static_cast<std::size_t>(level)] =
@@ -72,10 +87,6 @@ void Forecast::set(const Prediction& prediction, std::span<const Agent> now, con
 }
 
 StepRisk Forecast::step(int level, double ax, double ay, double bx, double by, double speed) const {
-  using Lanes = Eigen::Array4f;
-  const auto lanes = [](const std::vector<float>& values, std::size_t at) {
-    return Eigen::Map<const Lanes>(values.data() + at);
-  };
   const auto fax = static_cast<float>(ax);
   const auto fay = static_cast<float>(ay);
   const auto fbx = static_cast<float>(bx);
@@ -103,6 +114,26 @@ StepRisk Forecast::step(int level, double ax, double ay, double bx, double by, d
   risk.cost = static_cast<double>(cost * weight_[static_cast<std::size_t>(level)]);
   risk.contact = most.maxCoeff() > 1.0F && std::abs(speed) > kStanding;
   return risk;
+}
+
+double Forecast::obstruction(double ax, double ay, double bx, double by) const {
+  if (!anyone_lingers_) return 0.0;
+  const auto fax = static_cast<float>(ax);
+  const auto fay = static_cast<float>(ay);
+  const auto ex = static_cast<float>(bx - ax);
+  const auto ey = static_cast<float>(by - ay);
+  const float per_length2 = 1.0F / (ex * ex + ey * ey + 1e-9F);
+  Lanes most = Lanes::Zero();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(padded_); i += 4) {
+    const Lanes dx = lanes(x_, row(levels_) + i) - fax;
+    const Lanes dy = lanes(y_, row(levels_) + i) - fay;
+    const Lanes t = ((dx * ex + dy * ey) * per_length2).max(0.0F).min(1.0F);
+    const Lanes nx = dx - t * ex;
+    const Lanes ny = dy - t * ey;
+    const Lanes inside = ((lanes(rim_, i) - nx * nx - ny * ny) * lanes(scale_, i)).min(1.0F);
+    most = most.max(inside * lanes(lingers_, i));
+  }
+  return static_cast<double>(most.maxCoeff());
 }
 
 double Forecast::seed_cost(int level, double x, double y) const {

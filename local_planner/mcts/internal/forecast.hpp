@@ -32,6 +32,9 @@ class Forecast {
   /// that move straight at the same time: continuous, not at the ends alone.
   StepRisk step(int level, double ax, double ay, double bx, double by, double speed) const;
 
+  /// How far agents who hardly move stand in the way from a to b after the last step, in [0, 1].
+  double obstruction(double ax, double ay, double bx, double by) const;
+
   /// The first of (003) Eq. 1's sums, at the end of that step: alpha U over all agents (Eq. 2).
   double seed_cost(int level, double x, double y) const;
 
@@ -55,7 +58,9 @@ class Forecast {
   std::vector<float> uncertainty_;  // U [m2], [level][agent]
   std::vector<float> rim_;          // square of the distance where risk begins [m2], [agent]
   std::vector<float> scale_;        // makes that less the square of the contact's 1 [1/m2], [agent]
-  std::vector<float> weight_;       // of risk, [level]
+  std::vector<float> lingers_;      // 1: stands; 0: leaves, [agent]
+  bool anyone_lingers_ = false;
+  std::vector<float> weight_;  // of risk, [level]
 };
 
 }  // namespace headland::mcts

@@ -67,9 +67,18 @@ VehicleState Manoeuvres::to_state(const Motion& m) const {
   return state;
 }
 
-Command Manoeuvres::command(const Action& action) const {
-  return ackermann_ ? Command{action.speed, action.turn, 0.0}
-                    : Command{action.speed, 0.0, action.turn};
+Command Manoeuvres::command(const Vehicle& vehicle, const VehicleState& now, const Action& action,
+                            double dt) const {
+  const auto towards = [dt](double from, double to, double rate) {
+    return from + std::clamp(to - from, -rate * dt, rate * dt);
+  };
+  const double speed = towards(now.speed, action.speed, acceleration_);
+  const double from = ackermann_ ? now.steering : now.yaw_rate;
+  const double turn = towards(from, action.turn, turn_rate_);
+  Command command{command_through_lag(speed, now.speed, vehicle.speed_lag_s, dt), 0.0, 0.0};
+  (ackermann_ ? command.steering : command.yaw_rate) =
+      command_through_lag(turn, from, vehicle.steering_lag_s, dt);
+  return command;
 }
 
 Action Manoeuvres::action(const Motion& from, int number, double wanted) const {
@@ -78,8 +87,9 @@ Action Manoeuvres::action(const Motion& from, int number, double wanted) const {
   Action action{from.speed, from.turn + kTurnParts[turn] * turn_rate_ * step_s_};
   switch (number % kSpeeds) {
     case 0:  // to a stand first; from there, backwards
-      action.speed = from.speed > kStill ? std::max(0.0, from.speed - change)
-                                         : std::max(-reverse_speed_, from.speed - change);
+      action.speed = from.speed > kStill
+                         ? std::max(0.0, from.speed - change)
+                         : std::max(-std::min(reverse_speed_, wanted), from.speed - change);
       break;
     case 2:
       action.speed = from.speed < -kStill
@@ -96,6 +106,23 @@ Action Manoeuvres::action(const Motion& from, int number, double wanted) const {
   return action;
 }
 
+int Manoeuvres::turn_index(const Motion& from, double turn) const {
+  const double part = (turn - from.turn) / (turn_rate_ * step_s_);
+  if (part > 2.0 / 3.0) return 4;
+  if (part > 1.0 / 6.0) return 3;
+  if (part < -2.0 / 3.0) return 0;
+  return part < -1.0 / 6.0 ? 1 : 2;
+}
+
+int Manoeuvres::backwards(const Motion& from, double place_x, double place_y) const {
+  const double dx = place_x - from.x;
+  const double dy = place_y - from.y;
+  const double left = -from.s * dx + from.c * dy;
+  const double curvature = 2.0 * left / std::max(dx * dx + dy * dy, 0.01);
+  const double turn = ackermann_ ? std::atan(wheelbase_ * curvature) : from.speed * curvature;
+  return turn_index(from, turn) * kSpeeds;
+}
+
 int Manoeuvres::towards(const Motion& from, double place_x, double place_y, double wanted) const {
   const double dx = place_x - from.x;
   const double dy = place_y - from.y;
@@ -110,21 +137,11 @@ int Manoeuvres::towards(const Motion& from, double place_x, double place_y, doub
   } else {
     turn = std::atan2(left, ahead) / (2.0 * step_s_);
   }
-  const double part = (turn - from.turn) / (turn_rate_ * step_s_);
-  int index = 2;
-  if (part > 2.0 / 3.0)
-    index = 4;
-  else if (part > 1.0 / 6.0)
-    index = 3;
-  else if (part < -2.0 / 3.0)
-    index = 0;
-  else if (part < -1.0 / 6.0)
-    index = 1;
   // A differential vehicle that looks away turns first.
   const double speed = !ackermann_ && ahead < 0.5 * std::sqrt(squared) ? 0.0 : wanted;
   const double tolerance = 0.3 * acceleration_ * step_s_;
   const int pace = from.speed < speed - tolerance ? 2 : from.speed > speed + tolerance ? 0 : 1;
-  return index * kSpeeds + pace;
+  return turn_index(from, turn) * kSpeeds + pace;
 }
 
 Action Manoeuvres::braking(const Motion& from) const {

@@ -38,17 +38,22 @@ class Manoeuvres {
   double turn_reach() const { return turn_rate_ * step_s_; }  ///< most change in a step
   double radius() const { return radius_; }                   ///< tightest at low speed [m]
   bool ackermann() const { return ackermann_; }
+  bool reverses() const { return reverse_speed_ > 0.0; }
   double acceleration() const { return acceleration_; }  ///< [m/s2]
 
   Motion from(const VehicleState& state) const;
   VehicleState to_state(const Motion& motion) const;
-  Command command(const Action& action) const;
+  /// The command that leads `now` towards the action for `dt` [s], through the actuators' lags.
+  Command command(const Vehicle& vehicle, const VehicleState& now, const Action& action,
+                  double dt) const;
 
   /// The action of that number: turn index - 2 in thirds of what a step can change (-1, -1/3, 0,
   /// 1/3, 1), speed index 0 slower, 1 held, 2 faster up to `wanted` [m/s].
   Action action(const Motion& from, int number, double wanted) const;
   /// The number nearest to heading for `place` [m] with the speed going to `wanted`.
   int towards(const Motion& from, double place_x, double place_y, double wanted) const;
+  /// The number nearest to backing up to that place.
+  int backwards(const Motion& from, double place_x, double place_y) const;
   /// Braking as hard as it can, the turn held (the curve, that is).
   Action braking(const Motion& from) const;
   /// The number whose turn and speed are the k-th nearest to those of `number`.
@@ -61,6 +66,7 @@ class Manoeuvres {
   Motion drive(const Motion& from, const Action& action) const;
 
  private:
+  int turn_index(const Motion& from, double turn) const;
   static const std::array<std::array<int, kCount>, kCount> kOrder;
 
   bool ackermann_;

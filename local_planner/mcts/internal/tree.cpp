@@ -9,6 +9,7 @@
 namespace headland::mcts {
 namespace {
 
+constexpr double kDetourLook = 6.0;      // people farther ahead than this will have moved [m]
 constexpr double kBlockedCost = 1000.0;  // of driving into a static obstacle [s]
 
 Point2 centre_of(const Task& task, const Motion& at) {
@@ -30,16 +31,33 @@ Point2 goal_in_base(const Task& task, const Motion& at) {
 double remaining(const Task& task, const Motion& at) {
   const Point2 goal = goal_in_base(task, at);
   if (task.config->cost == MctsCost::kSeed) return goal.squaredNorm();
-  const double distance = forward_distance(goal, task.accuracy, task.moves->radius());
-  double seconds = distance / task.wanted;
-  if (!task.moves->ackermann() && distance > 0.0) {
-    seconds += std::abs(std::atan2(goal.y(), goal.x())) / task.moves->turn_limit();
-  }
-  const double slower = std::max(0.0, task.wanted - at.speed);
-  return seconds + slower * slower / (2.0 * task.moves->acceleration() * task.wanted);
+  const Manoeuvres& moves = *task.moves;
+  const auto seconds = [&](const Point2& place, double speed, double pace) {
+    const double distance = forward_distance(place, task.accuracy, moves.radius());
+    const double turn = moves.ackermann() || distance == 0.0
+                            ? 0.0
+                            : std::abs(std::atan2(place.y(), place.x())) / moves.turn_limit();
+    const double slower = std::max(0.0, task.wanted - speed);
+    return pace * distance / task.wanted + turn +
+           slower * slower / (2.0 * moves.acceleration() * task.wanted);
+  };
+  const double forwards = seconds(goal, at.speed, 1.0);
+  if (!moves.reverses() || goal.x() >= 0.0) return forwards;
+  return std::min(forwards, seconds({-goal.x(), goal.y()}, -at.speed, task.config->reverse_ratio));
 }
 
-// The least that the whole horizon allows: where the plan may not go on.
+// Who still stands in the way at the end has to be gone around.
+double detour(const Task& task, int first, const Motion& at) {
+  const Point2 from = centre_of(task, at);
+  const Point2 way = task.goal - from;
+  const double distance = way.norm();
+  if (distance < 1e-6) return 0.0;
+  const Point2 to = from + std::min(1.0, kDetourLook / distance) * way;
+  return task.config->detour_s *
+         forecast_of(task, first).obstruction(from.x(), from.y(), to.x(), to.y());
+}
+
+// Less the farther ahead, as the agents' own.
 double contact_cost(const Task& task, int level) {
   const MctsConfig& config = *task.config;
   return config.contact_s * std::exp(-level * config.step_s / config.trust_s);
@@ -106,27 +124,41 @@ Tree::Judged Tree::judge(const Task& task, int first, int level, const Motion& f
   const double faster = std::max(std::abs(from.speed), std::abs(to.speed));
   const StepRisk risk = forecast_of(task, first).step(level, a.x(), a.y(), b.x(), b.y(), faster);
   judged.contact = risk.contact;
+  judged.risky = risk.cost > 0.0;
   const double gear = to.speed < -1e-3 ? config.reverse_ratio : 1.0;
   const double steering = std::abs(to.turn - from.turn) / (2.0 * task.moves->turn_limit());
   const double pace = std::abs(to.speed - from.speed) / task.wanted;
   judged.cost = config.step_s * (gear + risk.cost) + config.steering_ratio * steering +
                 config.pace_ratio * pace;
+  // Of two plans that end alike, the one that gets on first.
+  judged.cost +=
+      config.step_s * config.progress_ratio * (Point2(to.x, to.y) - task.goal).norm() / task.wanted;
   judged.arrived =
       task.final && (Point2(to.x, to.y) - task.goal).squaredNorm() <= task.accuracy * task.accuracy;
   return judged;
 }
 
+Action Tree::next_action(const Task& task, const Motion& at, Rollout kind) const {
+  const Manoeuvres& moves = *task.moves;
+  const Point2& goal = task.goal;
+  switch (kind) {
+    case Rollout::kBrake:
+      return moves.braking(at);
+    case Rollout::kBack:
+      return moves.action(at, moves.backwards(at, goal.x(), goal.y()), task.wanted);
+    case Rollout::kGo:
+      break;
+  }
+  return moves.action(at, moves.towards(at, goal.x(), goal.y(), task.wanted), task.wanted);
+}
+
 // The cost of a plan that goes on from `at` by itself: heading for the goal, or braking. Writes its
 // states and actions if there is a `record`.
-double Tree::roll(const Task& task, int first, int level, Motion at, double cost, Rollout kind,
-                  Found* record) const {
+Tree::Rolled Tree::roll(const Task& task, int first, int level, Motion at, double cost,
+                        Rollout kind, Found* record) const {
+  bool clear = true;
   for (; level < task.config->depth_count; ++level) {
-    const Action action =
-        kind == Rollout::kBrake
-            ? task.moves->braking(at)
-            : task.moves->action(at,
-                                 task.moves->towards(at, task.goal.x(), task.goal.y(), task.wanted),
-                                 task.wanted);
+    const Action action = next_action(task, at, kind);
     const Motion to = task.moves->drive(at, action);
     const Judged judged = judge(task, first, level, at, to);
     if (record != nullptr) {
@@ -134,12 +166,16 @@ double Tree::roll(const Task& task, int first, int level, Motion at, double cost
       record->states.push_back(to);
     }
     cost += judged.cost;
-    if (judged.arrived) return cost;
-    if (judged.blocked) return cost + kBlockedCost;
-    if (judged.contact) return cost + contact_cost(task, level) + remaining(task, to);
+    clear = clear && !judged.risky;
+    if (judged.arrived) return {cost, clear};
+    if (judged.blocked) return {cost + kBlockedCost, false};
+    if (judged.contact) {
+      return {cost + contact_cost(task, level) + remaining(task, to), false};
+    }
     at = to;
   }
-  return cost + remaining(task, at);
+  const double around = detour(task, first, at);
+  return {cost + remaining(task, at) + around, clear && around <= 0.0};
 }
 
 void Tree::close_with_rollout(const Task& task, Node& n) const {
@@ -150,12 +186,16 @@ void Tree::close_with_rollout(const Task& task, Node& n) const {
     return;
   }
   n.rollout = Rollout::kGo;
-  n.own = roll(task, n.first, n.level, n.motion, n.cost, Rollout::kGo, nullptr);
-  const double braking = roll(task, n.first, n.level, n.motion, n.cost, Rollout::kBrake, nullptr);
-  if (braking < n.own) {
-    n.own = braking;
-    n.rollout = Rollout::kBrake;
-  }
+  const Rolled going = roll(task, n.first, n.level, n.motion, n.cost, Rollout::kGo, nullptr);
+  n.own = going.cost;
+  const auto offer = [&](Rollout other) {
+    const Rolled rolled = roll(task, n.first, n.level, n.motion, n.cost, other, nullptr);
+    if (rolled.cost >= n.own) return;
+    n.own = rolled.cost;
+    n.rollout = other;
+  };
+  if (!going.clear) offer(Rollout::kBrake);
+  if (task.moves->reverses() && goal_in_base(task, n.motion).x() < 0.0) offer(Rollout::kBack);
 }
 
 // Finds the cost of a node anew from its parent's state. False if it is no step at all.
@@ -197,7 +237,7 @@ void Tree::begin(const Task& task) {
   root.best = root.own;
   root.visits = std::max(root.visits, 1.0);
   constexpr int kHold = Manoeuvres::kTurns / 2 * Manoeuvres::kSpeeds;
-  brake_cost_ = roll(task, kHold, 0, root.motion, 0.0, Rollout::kBrake, nullptr);
+  brake_cost_ = roll(task, kHold, 0, root.motion, 0.0, Rollout::kBrake, nullptr).cost;
 }
 
 bool Tree::add_child(const Task& task, int number) {

@@ -64,7 +64,7 @@ class Tree {
   int size() const { return static_cast<int>(nodes_.size()); }
 
  private:
-  enum class Rollout : std::uint8_t { kGo, kBrake };
+  enum class Rollout : std::uint8_t { kGo, kBack, kBrake };
 
   struct Node {
     Motion motion;
@@ -87,6 +87,7 @@ class Tree {
 
   struct Judged {
     double cost = 0.0;
+    bool risky = false;
     bool blocked = false;  // by the map
     bool contact = false;
     bool arrived = false;
@@ -98,10 +99,15 @@ class Tree {
     return blocks_[static_cast<std::size_t>(n.block)][static_cast<std::size_t>(slot)];
   }
   Judged judge(const Task& task, int first, int level, const Motion& from, const Motion& to) const;
-  double roll(const Task& task, int first, int level, Motion at, double cost, Rollout kind,
+  struct Rolled {
+    double cost = 0.0;
+    bool clear = true;  // nobody came near
+  };
+  Rolled roll(const Task& task, int first, int level, Motion at, double cost, Rollout kind,
               Found* record) const;
   bool judge_node(const Task& task, int n);
   void close_with_rollout(const Task& task, Node& n) const;
+  Action next_action(const Task& task, const Motion& at, Rollout kind) const;
   bool add_child(const Task& task, int n);
   int select(const Task& task, int n) const;
   void hand_up(const Task& task, int n);
