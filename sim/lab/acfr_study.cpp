@@ -19,7 +19,7 @@ namespace {
 // A line of episodes.csv: a waypoint, an interaction, a sample of the displacement, or the whole
 // iteration. What does not belong to its kind is 0.
 struct LogRow {
-  double kind_index = 0.0;  // Kind
+  double kind_count = 0.0;  // Kind
   double time_s = 0.0;      // waypoint: until reached or given up; sample, iteration: since start
   double distance_m = 0.0;  // waypoint: straight; interaction: least; sample: displacement;
                             // iteration: driven
@@ -33,7 +33,7 @@ struct LogRow {
 
   template <class V>
   void visit(V& v) {
-    v("kind_index", kind_index);
+    v("kind_count", kind_count);
     v("time_s", time_s);
     v("distance_m", distance_m);
     v("reached_count", reached_count);
@@ -177,7 +177,7 @@ class Summary {
 
  private:
   void add(const LogRow& row) {
-    switch (static_cast<int>(row.kind_index)) {
+    switch (static_cast<int>(row.kind_count)) {
       case kVisit:
         ++visits_;
         if (row.reached_count == 0.0) ++failed_;

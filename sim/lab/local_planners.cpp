@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/local_planners.hpp"
 
-#include "local_planner/prediction/constant_velocity.hpp"
-
 namespace headland {
 namespace {
 
@@ -10,10 +8,12 @@ std::unique_ptr<Predictor> make_predictor(const LocalPlannersConfig& config) {
   switch (config.predictor) {
     case PredictorKind::kConstantVelocity:
       return std::make_unique<ConstantVelocityPredictor>(config.constant_velocity);
-    case PredictorKind::kReciprocal:
+    case PredictorKind::kHerd:
+      return std::make_unique<HerdPredictor>(config.herd);
+    case PredictorKind::kOrca:
       break;
   }
-  return std::make_unique<ReciprocalPredictor>(config.reciprocal);
+  return std::make_unique<OrcaPredictor>(config.orca);
 }
 
 }  // namespace

@@ -10,20 +10,22 @@
 #include "local_planner/fail_safe/fail_safe_planner.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
-#include "local_planner/prediction/agent_filter.hpp"
-#include "local_planner/prediction/reciprocal.hpp"
+#include "local_planner/prediction/constant_velocity.hpp"
+#include "local_planner/prediction/herd_predictor.hpp"
+#include "local_planner/prediction/orca_predictor.hpp"
 
 namespace headland {
 
 enum class LocalPlannerKind { kMcts, kFailSafe };
-enum class PredictorKind { kConstantVelocity, kReciprocal };
+enum class PredictorKind { kConstantVelocity, kOrca, kHerd };
 
 /// Settings of all local planners.
 struct LocalPlannersConfig {
   MctsConfig mcts;
-  PredictorKind predictor = PredictorKind::kReciprocal;
-  AgentFilterConfig constant_velocity;
-  ReciprocalConfig reciprocal;
+  PredictorKind predictor = PredictorKind::kOrca;
+  ConstantVelocityConfig constant_velocity;
+  OrcaConfig orca;
+  HerdConfig herd;
   FailSafePlannerConfig fs;
 
   template <class V>
@@ -31,7 +33,8 @@ struct LocalPlannersConfig {
     v("mcts", mcts, "Monte Carlo tree search");
     v("predictor", predictor, "How the tree search expects agents to move");
     v("constant_velocity", constant_velocity, "Agents that go straight on");
-    v("reciprocal", reciprocal, "Agents that give way to each other and to the robot");
+    v("orca", orca, "Agents that give way to each other and to the robot");
+    v("herd", herd, "Sheep and cattle");
     v("fs", fs, "Following the path and waiting");
   }
 };
@@ -52,5 +55,6 @@ template <>
 struct headland::config::EnumNames<headland::PredictorKind> {
   static constexpr std::pair<headland::PredictorKind, std::string_view> values[] = {
       {headland::PredictorKind::kConstantVelocity, "constant_velocity"},
-      {headland::PredictorKind::kReciprocal, "reciprocal"}};
+      {headland::PredictorKind::kOrca, "orca"},
+      {headland::PredictorKind::kHerd, "herd"}};
 };

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "local_planner/prediction/reciprocal.hpp"
+#include "local_planner/prediction/orca_predictor.hpp"
 #include "tests/local_planner/episode.hpp"
 #include "tests/local_planner/planner_laws.hpp"
 
@@ -38,7 +38,7 @@ TEST(MctsPlanner, ObeysThemWithAPredictorThatReacts) {
   test::expect_plans_repeat(
       [](const Vehicle& vehicle) {
         return std::make_unique<MctsPlanner>(vehicle, MctsConfig{},
-                                             std::make_unique<ReciprocalPredictor>());
+                                             std::make_unique<OrcaPredictor>());
       },
       {100, {}});
 }

@@ -9,7 +9,8 @@
 
 #include "core/base/random.hpp"
 #include "local_planner/prediction/constant_velocity.hpp"
-#include "local_planner/prediction/reciprocal.hpp"
+#include "local_planner/prediction/herd_predictor.hpp"
+#include "local_planner/prediction/orca_predictor.hpp"
 
 namespace headland {
 namespace {
@@ -20,7 +21,8 @@ class AnyPredictor : public ::testing::TestWithParam<Make> {};
 INSTANTIATE_TEST_SUITE_P(
     All, AnyPredictor,
     ::testing::Values([] { return std::make_unique<ConstantVelocityPredictor>(); },
-                      [] { return std::make_unique<ReciprocalPredictor>(); }));
+                      [] { return std::make_unique<OrcaPredictor>(); },
+                      [] { return std::make_unique<HerdPredictor>(); }));
 
 std::vector<Agent> walkers(int count, double time) {
   RandomStream random(3, "walkers");
@@ -98,8 +100,8 @@ TEST_P(AnyPredictor, ForgetsWhoIsNotSeen) {
   EXPECT_EQ(p.agents(), 0);
 }
 
-TEST(ReciprocalPredictor, ExpectsPeopleToGiveWayToTheRobotsPath) {
-  ReciprocalPredictor predictor;
+TEST(OrcaPredictor, ExpectsPeopleToGiveWayToTheRobotsPath) {
+  OrcaPredictor predictor;
   ConstantVelocityPredictor straight;
   Agent agent;
   agent.position = {8.0, 0.2};
@@ -115,8 +117,8 @@ TEST(ReciprocalPredictor, ExpectsPeopleToGiveWayToTheRobotsPath) {
   EXPECT_GT(reacting.mean[9].y(), standing.mean[9].y() + 0.2);
 }
 
-TEST(ReciprocalPredictor, PartsTwoPeopleOnACourseOfCollision) {
-  ReciprocalPredictor predictor;
+TEST(OrcaPredictor, PartsTwoPeopleOnACourseOfCollision) {
+  OrcaPredictor predictor;
   std::vector<Agent> two(2);
   two[0].position = {5.0, 5.0};
   two[0].velocity = {1.0, 0.0};
@@ -129,22 +131,6 @@ TEST(ReciprocalPredictor, PartsTwoPeopleOnACourseOfCollision) {
   for (int k = 0; k < 20; ++k) {
     EXPECT_GT((p.mean[p.index(0, k)] - p.mean[p.index(1, k)]).norm(), 0.59) << k;
   }
-}
-
-TEST(AgentFilter, FindsTheVelocityInNoise) {
-  RandomStream random(8, "filter");
-  AgentFilter filter;
-  Agent agent;
-  double error = 0.0;
-  for (int k = 0; k < 60; ++k) {
-    agent.position = {0.3 * k + 0.05 * random.normal(), 0.05 * random.normal()};
-    agent.velocity.setZero();
-    filter.observe({&agent, 1}, 0.25 * k);
-    if (k >= 20) error += (filter.agents()[0].agent.velocity - Point2(1.2, 0.0)).squaredNorm();
-  }
-  EXPECT_LT(std::sqrt(error / 40.0), 0.3);
-  // Its own word for it is honest.
-  EXPECT_NEAR(std::sqrt(2.0 * filter.agents()[0].velocity_variance), std::sqrt(error / 40.0), 0.2);
 }
 
 }  // namespace

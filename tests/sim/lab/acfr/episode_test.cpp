@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "local_planner/mcts/mcts_planner.hpp"
-#include "local_planner/prediction/reciprocal.hpp"
+#include "local_planner/prediction/orca_predictor.hpp"
 
 namespace headland {
 namespace {
@@ -39,7 +39,7 @@ AcfrOutcome drive(const AcfrTour& tour, AcfrWorldConfig world, int iterations = 
   episode.vehicle = robot();
   episode.density_m2 = density;
   episode.budget.iterations = iterations;
-  MctsPlanner planner(episode.vehicle, {}, std::make_unique<ReciprocalPredictor>());
+  MctsPlanner planner(episode.vehicle, {}, std::make_unique<OrcaPredictor>());
   return drive_acfr(episode, planner);
 }
 
