@@ -67,6 +67,7 @@ class Summary {
   StudyCell of(const std::vector<double>& plan_ms) {
     add_share("success", &CrowdOutcome::success_count);
     add_share("collision", &CrowdOutcome::collision_count);
+    add_share("robot_fault_collision", &CrowdOutcome::fault_count);
     add_share("timeout", timeout);
     add_share("near_miss_episodes",
               [](const CrowdOutcome& o) { return o.near_count > 0.0 ? 1.0 : 0.0; });

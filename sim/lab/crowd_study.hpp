@@ -40,7 +40,8 @@ struct CrowdStudyConfig {
 
 /// Cells `<planner>/visible` and `<planner>/invisible`, and those of `orca_holonomic`: the test's
 /// own kind of robot, by which the scenarios can be held against others' figures. Metrics: success,
-/// collision, timeout, near_miss_episodes (shares of episodes), time_s and length_m of successes,
+/// collision, robot_fault_collision (the robot drove towards the person, faster than 0.05 m/s),
+/// timeout, near_miss_episodes (shares of episodes), time_s and length_m of successes,
 /// gap_m (least distance to a person; gap_cvar5_m: mean of the worst twentieth), near_count (steps
 /// an episode), disturbed_ratio, disturbed_half_ratio, disturbed_quarter_ratio, plan_ms (of all
 /// decisions, processor time), success_P and collision_P with P = 2_4, 5_8, 9_11 people. All but

@@ -11,7 +11,8 @@ namespace {
 
 using namespace crowd_protocol;
 
-constexpr int kSubsteps = 5;  // of the robot, in a step of the people
+constexpr int kSubsteps = 5;      // of the robot, in a step of the people
+constexpr double kStands = 0.05;  // slower towards a person, the robot does not collide: it is hit
 
 Crowd crowd_of(const CrowdScenario& scenario) {
   CrowdConfig config;
@@ -110,6 +111,10 @@ class Drive {
       };
       const double distance = distance_to_segment(person(substep) - from, person(substep + 1) - to);
       gap = std::min(gap, distance - 2.0 * kRadius);
+      const Point2 towards = (person(substep) - from).normalized();
+      if (distance < 2.0 * kRadius && (to - from).dot(towards) > kStands * kDt) {
+        outcome_.fault_count = 1.0;
+      }
     }
     return gap;
   }

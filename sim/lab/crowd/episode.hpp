@@ -15,6 +15,7 @@ struct CrowdOutcome {
   double people_count = 0.0;
   double success_count = 0.0;    ///< 1: the goal was reached in time, without collision
   double collision_count = 0.0;  ///< 1: robot and a person touched
+  double fault_count = 0.0;      ///< 1: and the robot drove towards the person
   double time_s = 0.0;           ///< until the end, whatever it was
   double length_m = 0.0;         ///< driven
   double gap_m = 0.0;            ///< least distance of outlines, below 0 in a collision
@@ -30,6 +31,7 @@ struct CrowdOutcome {
     v("people_count", people_count);
     v("success_count", success_count);
     v("collision_count", collision_count);
+    v("fault_count", fault_count);
     v("time_s", time_s);
     v("length_m", length_m);
     v("gap_m", gap_m);

@@ -38,6 +38,7 @@ Row row_of(const StudyCell& cell) {
   return {cell.name,
           share(cell.find("success")),
           share(cell.find("collision")),
+          percent(cell.find("robot_fault_collision")),
           share(cell.find("near_miss_episodes")),
           mean(cell.find("time_s")),
           mean(cell.find("length_m")),
@@ -56,6 +57,7 @@ Row row_of(const PublishedCrowdResult& published) {
   return {std::string(published.name) + " (published, holonomic)",
           share_of(published.success),
           share_of(published.collision),
+          "-",
           share_of(published.near_miss_episodes),
           number(published.time_s),
           number(published.length_m),
@@ -66,11 +68,12 @@ Row row_of(const PublishedCrowdResult& published) {
 }
 
 StudyTable main_table(const StudyResult& result, bool visible) {
-  StudyTable table{visible ? "People see the robot; published: 500 episodes each"
-                           : "People do not see the robot",
-                   {"planner", "success %", "collision %", "near-miss episodes %", "time s",
-                    "length m", "disturbed > 1 %", "> 0.5 %", "> 0.25 m/s2 %", "plan ms p50 / p99"},
-                   {}};
+  StudyTable table{
+      visible ? "People see the robot; published: 500 episodes each"
+              : "People do not see the robot",
+      {"planner", "success %", "collision %", "robot's fault %", "near-miss episodes %", "time s",
+       "length m", "disturbed > 1 %", "> 0.5 %", "> 0.25 m/s2 %", "plan ms p50 / p99"},
+      {}};
   const std::string_view ending = visible ? "/visible" : "/invisible";
   for (const StudyCell& cell : result.cells) {
     if (cell.name.ends_with(ending)) table.rows.push_back(row_of(cell));

@@ -30,6 +30,7 @@ TEST(CrowdStudy, HasACellForEachPlannerWithPeopleWhoSeeAndWhoDoNot) {
   ASSERT_TRUE(result) << to_string(result.error());
   ASSERT_EQ(result->cells.size(), 2 * config.planners.size() + 2);
   EXPECT_TRUE(result->find("mcts/visible"));
+  EXPECT_TRUE(result->find("fs/invisible"));
   for (const StudyCell& cell : result->cells) {
     SCOPED_TRACE(cell.name);
     EXPECT_EQ(cell.n, 6);

@@ -69,8 +69,17 @@ TEST(CrowdEpisode, OfARobotThatDrivesIntoSomeoneIsACollision) {
   const CrowdOutcome outcome = drive({kEastwards, {standing(0.0, 0.1)}}, false, robot);
   EXPECT_EQ(outcome.collision_count, 1.0);
   EXPECT_EQ(outcome.success_count, 0.0);
+  EXPECT_EQ(outcome.fault_count, 1.0);
   EXPECT_EQ(outcome.time_s, 7.0);  // it touches 0.59 m before 7.5 m
   EXPECT_LT(outcome.gap_m, 0.0);
+}
+
+TEST(CrowdEpisode, OfARobotThatStandsIsNotItsFault) {
+  StraightRobot robot({0.0, 0.0}, {0.0, 0.0});
+  const CrowdOutcome outcome =
+      drive({{{0.0, 0.0}, {7.5, 0.0}}, {{{-3.0, 0.1}, {3.0, 0.1}}}}, false, robot);
+  EXPECT_EQ(outcome.collision_count, 1.0);
+  EXPECT_EQ(outcome.fault_count, 0.0);
 }
 
 // 3 m in a step: neither end of the step is near anyone.
