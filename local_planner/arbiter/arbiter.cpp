@@ -11,7 +11,7 @@ constexpr double kStep = 0.2;     // of the look ahead [s]
 constexpr double kBehind = 3.0;   // the path is searched this far back for the vehicle [m]
 constexpr double kAhead = 3.0;    // ... and ahead
 constexpr double kWidens = 4.0;   // a free path is taken up from twice as far after so long [s] ...
-constexpr double kWidest = 5.0;   // ... and at most this many times
+constexpr double kWidest = 6.0;   // ... and at most this many times
 constexpr double kNoDelay = 0.0;  // beyond a stand nobody needs to wait
 
 // Since when something holds at `time` [s]; -1: it does not.

@@ -18,6 +18,7 @@ namespace {
 constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
 constexpr double kStands = 0.05;         // slower than this [m/s]
 constexpr double kCommit = 0.5;          // what is driven before the next plan can stop it [s]
+constexpr double kAnyNearer = 0.05;      // [m]
 constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
 
@@ -100,6 +101,11 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
   task.forecasts = &forecasts;
   task.map = scene.map;
   task.radius = radius;
+  if (scene.map != nullptr && !scene.map->empty()) {
+    // Nearer to an obstacle than that already, it may go as near, to get away.
+    task.radius =
+        std::min(radius, scene.map->clearance(robot_centre(scene.robot.state)) - kAnyNearer);
+  }
   task.centre = centre;
   task.wanted = speed_within(vehicle, goal.speed_mps, Gear::kForward, 0.0);
   task.final = true;

@@ -21,7 +21,8 @@ constexpr double kStill = 1e-3;
 // To where the local planner drives: the end of a stretch of one gear [m].
 constexpr double kPlaceAccuracy = 0.3;
 constexpr double kStands = 0.05;  // the local planner creeps at less [m/s]
-// Nearer than this to the end of such a stretch the path is not left [m].
+// Nearer than this to the end of such a stretch, or of a leg, the path is not left [m]; nor within
+// rows and headland turns, where there is no room: there the vehicle waits.
 constexpr double kNoLeavingBefore = 5.0;
 constexpr double kReplanPeriod = 60.0;  // [s]
 constexpr int kReplanPlaces = 4;
@@ -217,8 +218,10 @@ ArbiterView PlanDriver::local_view(double time) {
   const PathSample at = reference_.path.at(reached_s_);
   const PathSegment& segment = reference_.path.segments()[static_cast<std::size_t>(at.segment)];
   ArbiterView view;
-  view.may_leave = plan_.legs[static_cast<std::size_t>(at.leg)].kind != LegKind::kRow &&
-                   at.gear == Gear::kForward && segment.end_s - reached_s_ > kNoLeavingBefore;
+  const LegKind kind = plan_.legs[static_cast<std::size_t>(at.leg)].kind;
+  const double end = std::min(segment.end_s, reference_.path.leg_range(at.leg).second);
+  view.may_leave = kind != LegKind::kRow && kind != LegKind::kTurn && at.gear == Gear::kForward &&
+                   end - reached_s_ > kNoLeavingBefore;
   if (time >= spare_until_) {
     spare_ratio_ = spare() / plan_.vehicle.battery.capacity_j();
     spare_until_ = time + 1.0;

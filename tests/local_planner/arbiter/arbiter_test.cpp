@@ -74,11 +74,27 @@ TEST(Arbiter, GivesBackOnlyOnThePath) {
   Road road;
   road.ask(kInTheWay);
   road.robot.pose.y = 0.5;
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(road.ask(kNobody), Driving::kLocal) << "beside it";
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(road.ask(kNobody), Driving::kLocal) << "beside it";
   road.robot.pose = {1.0, 0.0, 0.5};
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(road.ask(kNobody), Driving::kLocal) << "across it";
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(road.ask(kNobody), Driving::kLocal) << "across it";
   road.robot.pose.yaw = 0.1;
   EXPECT_EQ(road.ask(kNobody), Driving::kPath);
+}
+
+TEST(Arbiter, TakesAPathUpFromFartherOffTheLongerItIsFree) {
+  const auto seconds_until_back = [](double beside) {
+    Road road;
+    road.ask(kInTheWay);
+    road.robot.pose.y = beside;
+    const double begin = road.time;
+    while (road.ask(kNobody) == Driving::kLocal && road.time < 100.0) {
+    }
+    return road.time - begin;
+  };
+  EXPECT_NEAR(seconds_until_back(0.2), 1.2, 0.21);
+  EXPECT_NEAR(seconds_until_back(0.6), 5.2, 0.41);
+  EXPECT_GT(seconds_until_back(1.5), 15.0);
+  EXPECT_GT(seconds_until_back(2.0), 99.0) << "a tracker could not";
 }
 
 TEST(Arbiter, DoesNotLeaveWhereItMayNot) {
