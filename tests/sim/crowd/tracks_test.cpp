@@ -23,15 +23,13 @@ std::string data_file(const std::string& name) {
   return (root / "trajectories" / name).string();
 }
 
-class TracksFile : public ::testing::Test {
- protected:
-  std::string write(const std::string& text) const {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    const fs::path path = fs::temp_directory_path() / (std::string(test->name()) + ".txt");
-    std::ofstream(path) << text;
-    return path.string();
-  }
-};
+// A file of the running test with this text.
+std::string write(const std::string& text) {
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  const fs::path path = fs::temp_directory_path() / (std::string(test->name()) + ".txt");
+  std::ofstream(path) << text;
+  return path.string();
+}
 
 const char* const kObsmat =
     " 106 7 1.0 0 4.0 9 9 9\n"
@@ -40,7 +38,7 @@ const char* const kObsmat =
     "\n"
     " 118 7 2.0 0 6.0 9 9 9\r\n";
 
-TEST_F(TracksFile, FramesBecomeSecondsThatBeginAtTheFirstSample) {
+TEST(TracksFile, FramesBecomeSecondsThatBeginAtTheFirstSample) {
   const auto set = read_obsmat(write(kObsmat));
   ASSERT_TRUE(set) << to_string(set.error());
   ASSERT_EQ(set->tracks.size(), 2u);
@@ -53,7 +51,7 @@ TEST_F(TracksFile, FramesBecomeSecondsThatBeginAtTheFirstSample) {
   EXPECT_DOUBLE_EQ(set->step_s, 0.4);
 }
 
-TEST_F(TracksFile, BetweenSamplesAnAgentMovesStraightAndAtASampleItHasThePastVelocity) {
+TEST(TracksFile, BetweenSamplesAnAgentMovesStraightAndAtASampleItHasThePastVelocity) {
   const auto set = read_obsmat(write(kObsmat));
   ASSERT_TRUE(set);
   const Track& walker = set->tracks[0];
@@ -71,7 +69,7 @@ TEST_F(TracksFile, BetweenSamplesAnAgentMovesStraightAndAtASampleItHasThePastVel
   EXPECT_LT((later->velocity - Point2(1.25, 2.5)).norm(), 1e-12);
 }
 
-TEST_F(TracksFile, AgentsAreThereFromTheirFirstSampleToTheirLast) {
+TEST(TracksFile, AgentsAreThereFromTheirFirstSampleToTheirLast) {
   const auto set = read_obsmat(write(kObsmat));
   ASSERT_TRUE(set);
   std::vector<Agent> agents;
@@ -87,7 +85,7 @@ TEST_F(TracksFile, AgentsAreThereFromTheirFirstSampleToTheirLast) {
   EXPECT_FALSE(set->tracks[0].at(std::nan("")));
 }
 
-TEST_F(TracksFile, ErrorsNameTheFileAndTheLine) {
+TEST(TracksFile, ErrorsNameTheFileAndTheLine) {
   const std::string file = write(std::string(kObsmat) + "120 7 x 0 0 0 0 0\n");
   EXPECT_EQ(to_string(read_obsmat(file).error()).find(file + ":6: a frame"), 0u)
       << to_string(read_obsmat(file).error());
@@ -103,7 +101,7 @@ TEST_F(TracksFile, ErrorsNameTheFileAndTheLine) {
   EXPECT_EQ(wolf.error().where.line, 2);
 }
 
-TEST_F(TracksFile, DrivesAreSetsOfTheirOwn) {
+TEST(TracksFile, DrivesAreSetsOfTheirOwn) {
   const auto drives = read_sheep_dog(
       write("trial,drive,t_s,agent,role,x_m,y_m\n1,1,0.0,1,sheep,1,2\n1,1,0.1,1,sheep,1.2,2\n"
             "1,2,5.0,1,sheep,1,2\n1,2,5.0,9,dog,7,8\n1,2,5.1,1,sheep,1,2\n"));
