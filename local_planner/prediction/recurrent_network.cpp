@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
 #include <iterator>
 #include <optional>
-#include <vector>
 
 #include <fmt/format.h>
 
@@ -180,6 +180,18 @@ Result<ResponseNetwork> parse_network(std::string_view text, const std::string& 
   }
   if (reader.error()) return tl::unexpected<Error>(*reader.error());
   return network;
+}
+
+Result<ResponseNetwork> load_network(const std::filesystem::path& file) {
+  std::error_code code;
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file, code)) {
+    return fail(ErrorCode::kFileNotFound, stream ? "is a directory" : "no such file",
+                "name a network's weights, such as config/models/crowd_response.weights",
+                {file.string(), 0, {}});
+  }
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  return parse_network(text, file.string());
 }
 
 std::string to_text(const ResponseNetwork& network) {

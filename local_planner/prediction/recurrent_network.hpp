@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstdint>
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -60,6 +60,9 @@ struct ResponseNetwork {
 /// such a file, cut short, changed), kUnsupported (another version), kOutOfRange (a number that is
 /// none, a shape that does not fit), each with its line.
 Result<ResponseNetwork> parse_network(std::string_view text, const std::string& name);
+
+/// Reads a network's file; kFileNotFound if that cannot be read.
+Result<ResponseNetwork> load_network(const std::filesystem::path& file);
 
 /// The text of a network's file. Weights are rounded to six digits.
 std::string to_text(const ResponseNetwork& network);

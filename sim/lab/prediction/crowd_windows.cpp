@@ -37,7 +37,7 @@ struct Draw {
   double area = 10.0;  // per agent [m2]
   double radius = 0.5;
   double robot_radius = 1.5;
-  double half_side = 12.0;
+  double half_side = 20.0;
 };
 
 // Agents with goals in a square; a new goal at each arrival.
@@ -55,7 +55,7 @@ Episode wandering(const Draw& draw, RandomStream& random, std::uint64_t seed) {
     return std::optional<Point2>(within(stream, half));
   };
   return {Crowd({}, std::move(agents), {}, seed, goals),
-          WanderingRobot(0.6 * draw.half_side, draw.robot_radius, seed)};
+          WanderingRobot(0.7 * draw.half_side, draw.robot_radius, seed)};
 }
 
 // (MCTS-GRNN) people on opposite sides of a circle or of a square.
@@ -88,7 +88,7 @@ Episode make_episode(CrowdScene scene, RandomStream& random, std::uint64_t seed)
     case CrowdScene::kDense:
       return wandering({}, random, seed);
     case CrowdScene::kSparse:
-      return wandering({50.0, 0.5, 1.5, 18.0}, random, seed);
+      return wandering({50.0, 0.5, 1.5, 30.0}, random, seed);
     case CrowdScene::kCrossing:
       return crossing(random, seed);
     case CrowdScene::kMixed:
@@ -98,7 +98,7 @@ Episode make_episode(CrowdScene scene, RandomStream& random, std::uint64_t seed)
   draw.area = random.uniform(8.0, 60.0);
   draw.radius = random.uniform(0.25, 0.6);
   draw.robot_radius = random.uniform(0.3, 2.0);
-  draw.half_side = random.uniform(10.0, 14.0);
+  draw.half_side = random.uniform(12.0, 25.0);
   return wandering(draw, random, seed);
 }
 

@@ -109,6 +109,15 @@ TEST(RecurrentNetwork, AFileOfAnotherKindIsRefused) {
   }
 }
 
+TEST(RecurrentNetwork, AFileThatIsNotThereIsSaidToBeMissing) {
+  for (const char* path : {"/nowhere/net.weights", "/"}) {
+    const auto loaded = load_network(path);
+    ASSERT_FALSE(loaded);
+    EXPECT_EQ(loaded.error().code, ErrorCode::kFileNotFound);
+    EXPECT_THAT(to_string(loaded.error()), HasSubstr(path));
+  }
+}
+
 TEST(RecurrentNetwork, AFileCutAnywhereIsRefused) {
   const std::string text = good();
   for (std::size_t size = 0; size + 2 < text.size(); size += 97) {
