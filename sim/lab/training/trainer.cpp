@@ -21,10 +21,10 @@ struct Share {
   int other_episodes;  // of validation, and of test
 };
 
-constexpr Share kShares[] = {{CrowdScene::kDense, 450, 20},
-                             {CrowdScene::kSparse, 250, 20},
-                             {CrowdScene::kCrossing, 1500, 60},
-                             {CrowdScene::kMixed, 350, 20}};
+constexpr Share kShares[] = {{CrowdScene::kDense, 900, 20},
+                             {CrowdScene::kSparse, 500, 20},
+                             {CrowdScene::kCrossing, 3000, 60},
+                             {CrowdScene::kMixed, 700, 20}};
 
 constexpr Disturbance kDisturbance{true, kPi, 0.3, 0.15, 1.5, 0.1, 0.2};
 
