@@ -14,7 +14,7 @@ struct TrainingSettings {
   std::uint64_t seed = 3;
   int embedded = 24;  ///< values that the robot and the neighbours become
   int hidden = 48;    ///< of a cell
-  int most_epochs = 6;
+  int most_epochs = 10;
   int patience = 2;  ///< epochs without a better validation, then it ends
   int windows_per_batch = 48;
   double rate = 3e-3;  ///< of Adam; falls to last_rate with a cosine
