@@ -21,7 +21,8 @@ VehicleState LocalPlan::at(double time_s) const {
   const VehicleState& b = states[i + 1];
   const double ratio = steps - static_cast<double>(i);
   const auto mix = [ratio](double from, double to) { return from + ratio * (to - from); };
-  return {{mix(a.pose.x, b.pose.x), mix(a.pose.y, b.pose.y), mix(a.pose.yaw, b.pose.yaw)},
+  return {{mix(a.pose.x, b.pose.x), mix(a.pose.y, b.pose.y),
+           a.pose.yaw + ratio * wrap_angle(b.pose.yaw - a.pose.yaw)},
           mix(a.speed, b.speed),
           mix(a.steering, b.steering),
           mix(a.yaw_rate, b.yaw_rate)};
@@ -29,15 +30,21 @@ VehicleState LocalPlan::at(double time_s) const {
 
 void LocalPlanner::plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
                         LocalPlan& plan) {
-  plan.expansions = 0;
-  plan.cost = 0.0;
-  do_plan(scene, goal, budget, plan);
+  if (!is_finite(scene, goal) || !(goal.speed_mps > 0.0)) {
+    brake(vehicle_, scene.robot.state, scene.time_s, LocalStatus::kBadInput, plan);
+  } else if (!(scene.age_s <= kOldestScene)) {
+    brake(vehicle_, scene.robot.state, scene.time_s, LocalStatus::kStale, plan);
+  } else {
+    plan.expansions = 0;
+    plan.cost = 0.0;
+    do_plan(scene, goal, budget, plan);
+  }
 }
 
 void brake(const Vehicle& vehicle, const VehicleState& state, double time_s, LocalStatus status,
            LocalPlan& plan) {
   plan.status = status;
-  plan.begin_s = time_s;
+  plan.begin_s = std::isfinite(time_s) ? time_s : 0.0;
   plan.step_s = 0.1;
   plan.expansions = 0;
   plan.cost = 0.0;
@@ -56,8 +63,15 @@ void brake(const Vehicle& vehicle, const VehicleState& state, double time_s, Loc
   }
 }
 
+bool is_finite(const Agent& agent) {
+  return agent.position.allFinite() && agent.velocity.allFinite() &&
+         std::isfinite(agent.radius_m) && std::isfinite(agent.noise_m);
+}
+
 bool is_finite(const LocalScene& scene, const LocalGoal& goal) {
-  return is_finite(scene.robot.state) && std::isfinite(scene.time_s) && goal.place.allFinite() &&
+  return std::all_of(scene.agents.begin(), scene.agents.end(),
+                     [](const Agent& agent) { return is_finite(agent); }) &&
+         is_finite(scene.robot.state) && std::isfinite(scene.time_s) && goal.place.allFinite() &&
          std::isfinite(goal.accuracy_m) && std::isfinite(goal.speed_mps) && std::isfinite(goal.s) &&
          !std::isnan(scene.age_s);
 }

@@ -29,6 +29,7 @@ struct LocalGoal {
   const Path* path = nullptr;  ///< the global path; null: none, straight to `place`
   double s = 0.0;              ///< progress along it [m]
   Point2 place{0.0, 0.0};      ///< the next waypoint
+  double place_s = 0.0;        ///< where on the path it lies [m]
   double accuracy_m = 1.0;     ///< it is reached within this distance
   double speed_mps = 1.0;      ///< wanted on the way, > 0
 };
@@ -67,18 +68,28 @@ struct LocalPlan {
 /// answers with a plan that the vehicle can drive, whatever the input; never throws.
 class LocalPlanner {
  public:
+  /// A scene older than this is not planned by [s].
+  static constexpr double kOldestScene = 0.5;
+
   virtual ~LocalPlanner() = default;
   /// Sees the scene; planners keep track of agents from call to call. To be called with each new
   /// sight of the agents, whether a plan is wanted or not.
   void observe(const LocalScene& scene) { do_observe(scene); }
-  /// The next seconds from `scene` on; `plan` is overwritten (its buffers are reused).
+  /// The next seconds from `scene` on; `plan` is overwritten (its buffers are reused). What is no
+  /// number (agents included), no wanted speed and a scene that is too old are braked for here.
   void plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
             LocalPlan& plan);
 
  protected:
+  explicit LocalPlanner(const Vehicle& vehicle) : vehicle_(vehicle) {}
+  const Vehicle& vehicle() const { return vehicle_; }
+
   virtual void do_observe(const LocalScene&) {}
   virtual void do_plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
                        LocalPlan& plan) = 0;
+
+ private:
+  Vehicle vehicle_;
 };
 
 /// Braking to a stand from `state`, along the curve that it is on: the fallback of all planners.
@@ -86,6 +97,7 @@ class LocalPlanner {
 void brake(const Vehicle& vehicle, const VehicleState& state, double time_s, LocalStatus status,
            LocalPlan& plan);
 
+bool is_finite(const Agent& agent);
 /// Whether all that a planner goes by are numbers.
 bool is_finite(const LocalScene& scene, const LocalGoal& goal);
 
