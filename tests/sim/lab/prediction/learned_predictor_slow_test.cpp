@@ -66,7 +66,8 @@ TEST(LearnedPredictorOnCrowds, ItsGaussiansHoldWhatTheyPromise) {
   for (const CrowdScene scene : {CrowdScene::kDense, CrowdScene::kSparse, CrowdScene::kMixed}) {
     const PredictionScore score = scores_near_the_robot(scene, 20).told;
     EXPECT_GT(score.within_1_ratio, 0.393) << "errors have heavy tails: most are small";
-    EXPECT_NEAR(score.within_2_ratio, 0.865, 0.08);
+    EXPECT_GT(score.within_2_ratio, 0.80) << "a Gaussian has 0.865";
+    EXPECT_LT(score.within_2_ratio, 0.97) << "no wider than it need be";
   }
 }
 
