@@ -8,7 +8,7 @@ namespace headland {
 
 struct ConstantVelocityConfig {
   AgentFilterConfig filter;
-  VelocityWalk spread{0.16, 0.55, 0.4, 1.0, 0.3};
+  VelocityWalk spread{0.12, 0.65, 0.4, 1.0, 0.3};
 
   template <class V>
   void visit(V& v) {
@@ -33,14 +33,5 @@ class ConstantVelocityPredictor : public Predictor {
   ConstantVelocityConfig config_;
   AgentFilter filter_;
 };
-
-/// Whether steps of `step_s` [s] can be predicted: more than none, and none longer than 10 s.
-bool can_predict(double step_s, int steps);
-
-/// Makes room for all agents, writes who they are, and their covariances by what the filter does
-/// not know and by `spread`. If that cannot be predicted, there are no steps. The means are left
-/// to the caller.
-void begin_prediction(std::span<const FilteredAgent> agents, const VelocityWalk& spread,
-                      double step_s, int steps, Prediction& prediction);
 
 }  // namespace headland

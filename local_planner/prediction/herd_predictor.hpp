@@ -49,7 +49,7 @@ struct HerdResponse {
 
 struct HerdConfig {
   AgentFilterConfig filter;
-  VelocityWalk spread{0.1, 0.4, 0.3, 1.0, 0.3};
+  VelocityWalk spread{0.07, 0.35, 0.3, 1.0, 0.3};
   CompanionModel companions;
   HerdResponse herd;
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "local_planner/prediction/prediction_steps.hpp"
+
 namespace headland {
 namespace {
 
@@ -20,7 +22,6 @@ OrcaPredictor::OrcaPredictor(const OrcaConfig& config) : config_(config), filter
 void OrcaPredictor::observe(std::span<const Agent> agents, const Point2& robot, const Point2&,
                             double time_s) {
   filter_.observe(agents, time_s);
-  companion_velocities(config_.companions, filter_.seen(), velocities_);
   if (robot.allFinite()) robot_ = robot;
   positions_.clear();
   for (const FilteredAgent& agent : filter_.seen()) positions_.push_back(agent.position);
@@ -32,8 +33,7 @@ double OrcaPredictor::kept_distance(std::size_t a, std::size_t b) const {
   return std::min(seen[a].radius_m + seen[b].radius_m, (positions_[a] - positions_[b]).norm());
 }
 
-Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot,
-                                        const Point2& preferred, double dt) const {
+Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot, double dt) const {
   const Avoidance& avoidance = config_.avoidance;
   const Body& body = bodies_[self];
   lines_.clear();
@@ -50,8 +50,9 @@ Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot,
         {bodies_[other].position, bodies_[other].velocity, kept_distance(self, other), 0.5},
         avoidance.horizon_s, dt));
   }
-  const double max_speed = std::max(avoidance.max_speed_mps, preferred.norm());
-  return permitted_velocity(lines_, 0, preferred, max_speed, program_);
+  const Point2& wanted = filter_.seen()[self].velocity;
+  const double max_speed = std::max(avoidance.max_speed_mps, wanted.norm());
+  return permitted_velocity(lines_, 0, wanted, max_speed, program_);
 }
 
 void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, int steps,
@@ -61,25 +62,17 @@ void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, i
   if (prediction.steps == 0) return;
   bodies_.clear();
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    bodies_.push_back({seen[i].position, velocities_[i]});
+    bodies_.push_back({seen[i].position, seen[i].velocity});
   }
-  const int parts = static_cast<int>(std::ceil(step_s / kLongestStep));
+  const int parts = parts_of(step_s, kLongestStep);
   const double dt = step_s / parts;
   Body robot{robot_, {0.0, 0.0}};
   for (int k = 0; k < prediction.steps; ++k) {
-    const auto next = static_cast<std::size_t>(k);
-    robot.velocity.setZero();
-    if (next < robot_path.size() && robot_path[next].allFinite()) {
-      robot.velocity = (robot_path[next] - robot.position) / step_s;
-    }
+    robot.velocity = velocity_along(robot_path, k, robot.position, step_s);
     for (int part = 0; part < parts; ++part) {
-      const double t = k * step_s + part * dt;
       next_.clear();
       for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const double pace = (way_after(config_.companions, seen[i].kind, t + dt) -
-                             way_after(config_.companions, seen[i].kind, t)) /
-                            dt;
-        const Point2 velocity = avoiding_velocity(i, robot, pace * velocities_[i], dt);
+        const Point2 velocity = avoiding_velocity(i, robot, dt);
         next_.push_back({bodies_[i].position + dt * velocity, velocity});
       }
       std::swap(bodies_, next_);
