@@ -14,7 +14,7 @@ namespace headland {
 /// How far the velocities of agents wander, by their kind: the standard deviation per axis after
 /// one second of white acceleration [m/s].
 struct VelocityWalk {
-  double person_mps = 0.35;
+  double person_mps = 0.3;
   double sheep_mps = 1.2;
   double cattle_mps = 0.8;
   double dog_mps = 2.0;

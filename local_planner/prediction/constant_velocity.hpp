@@ -8,7 +8,7 @@ namespace headland {
 
 struct ConstantVelocityConfig {
   AgentFilterConfig filter;
-  VelocityWalk spread{0.12, 0.65, 0.4, 1.0, 0.3};
+  VelocityWalk spread{0.16, 0.55, 0.4, 1.0, 0.3};
 
   template <class V>
   void visit(V& v) {

@@ -22,6 +22,7 @@ OrcaPredictor::OrcaPredictor(const OrcaConfig& config) : config_(config), filter
 void OrcaPredictor::observe(std::span<const Agent> agents, const Point2& robot, const Point2&,
                             double time_s) {
   filter_.observe(agents, time_s);
+  companion_velocities(config_.companions, filter_.seen(), velocities_);
   if (robot.allFinite()) robot_ = robot;
   positions_.clear();
   for (const FilteredAgent& agent : filter_.seen()) positions_.push_back(agent.position);
@@ -33,7 +34,8 @@ double OrcaPredictor::kept_distance(std::size_t a, std::size_t b) const {
   return std::min(seen[a].radius_m + seen[b].radius_m, (positions_[a] - positions_[b]).norm());
 }
 
-Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot, double dt) const {
+Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot,
+                                        const Point2& preferred, double dt) const {
   const Avoidance& avoidance = config_.avoidance;
   const Body& body = bodies_[self];
   lines_.clear();
@@ -50,9 +52,8 @@ Point2 OrcaPredictor::avoiding_velocity(std::size_t self, const Body& robot, dou
         {bodies_[other].position, bodies_[other].velocity, kept_distance(self, other), 0.5},
         avoidance.horizon_s, dt));
   }
-  const Point2& wanted = filter_.seen()[self].velocity;
-  const double max_speed = std::max(avoidance.max_speed_mps, wanted.norm());
-  return permitted_velocity(lines_, 0, wanted, max_speed, program_);
+  const double max_speed = std::max(avoidance.max_speed_mps, preferred.norm());
+  return permitted_velocity(lines_, 0, preferred, max_speed, program_);
 }
 
 void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, int steps,
@@ -62,7 +63,7 @@ void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, i
   if (prediction.steps == 0) return;
   bodies_.clear();
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    bodies_.push_back({seen[i].position, seen[i].velocity});
+    bodies_.push_back({seen[i].position, velocities_[i]});
   }
   const int parts = parts_of(step_s, kLongestStep);
   const double dt = step_s / parts;
@@ -70,9 +71,13 @@ void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, i
   for (int k = 0; k < prediction.steps; ++k) {
     robot.velocity = velocity_along(robot_path, k, robot.position, step_s);
     for (int part = 0; part < parts; ++part) {
+      const double t = k * step_s + part * dt;
       next_.clear();
       for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        const Point2 velocity = avoiding_velocity(i, robot, dt);
+        const double pace = (way_after(config_.companions, seen[i].kind, t + dt) -
+                             way_after(config_.companions, seen[i].kind, t)) /
+                            dt;
+        const Point2 velocity = avoiding_velocity(i, robot, pace * velocities_[i], dt);
         next_.push_back({bodies_[i].position + dt * velocity, velocity});
       }
       std::swap(bodies_, next_);

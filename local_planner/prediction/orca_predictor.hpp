@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/model/orca.hpp"
-#include "local_planner/prediction/constant_velocity.hpp"
+#include "local_planner/prediction/companions.hpp"
 #include "local_planner/prediction/nearest_agents.hpp"
 
 namespace headland {
@@ -35,7 +35,8 @@ struct Avoidance {
 
 struct OrcaConfig {
   AgentFilterConfig filter;
-  VelocityWalk spread{0.07, 0.65, 0.4, 1.0, 0.3};
+  VelocityWalk spread{0.1, 0.55, 0.4, 1.0, 0.3};
+  CompanionModel companions;
   Avoidance avoidance;
 
   template <class V>
@@ -43,12 +44,13 @@ struct OrcaConfig {
     v("filter", filter, "Of the agents");
     v("spread", spread,
       "How far velocities wander after the last sight, beside the filter's doubt");
+    v("companions", companions, "Of people");
     v("avoidance", avoidance, "Of all agents");
   }
 };
 
-/// Agents that want to go on as they move now, and avoid each other and the robot on its path by
-/// ORCA. Those who are nearer to each other than their radii keep the distance that
+/// Agents that want to go on as CompanionPredictor has them, and avoid each other and the robot on
+/// its path by ORCA. Those who are nearer to each other than their radii keep the distance that
 /// they have. Takes about 1 us per agent and step; does not allocate once its buffers have held as
 /// many agents.
 class OrcaPredictor : public Predictor {
@@ -66,7 +68,8 @@ class OrcaPredictor : public Predictor {
     Point2 position{0.0, 0.0};
     Point2 velocity{0.0, 0.0};
   };
-  Point2 avoiding_velocity(std::size_t self, const Body& robot, double dt) const;
+  Point2 avoiding_velocity(std::size_t self, const Body& robot, const Point2& preferred,
+                           double dt) const;
   double kept_distance(std::size_t a, std::size_t b) const;
 
   OrcaConfig config_;
@@ -74,6 +77,7 @@ class OrcaPredictor : public Predictor {
   NearestAgents nearest_;
   Point2 robot_{0.0, 0.0};
   std::vector<Point2> positions_;
+  std::vector<Point2> velocities_;  // that agents want
   // Scratch of a prediction.
   mutable std::vector<Body> bodies_;
   mutable std::vector<Body> next_;

@@ -28,6 +28,7 @@ struct Recording {
   RecordingKind kind = RecordingKind::kPedestrian;
   std::string name;
   RecordingPart part = RecordingPart::kAll;
+  double noise_m = 0.05;
 
   template <class V>
   void visit(V& v) {
@@ -36,6 +37,8 @@ struct Recording {
     v.required("kind", kind, "What it holds");
     v("name", name, "Of the scene; empty: that of the folder that the file lies in");
     v("part", part, "Which of its drives");
+    v("noise_m", noise_m, config::kNonNegative,
+      "Standard deviation of its positions, as predictors are told [m]");
   }
 };
 

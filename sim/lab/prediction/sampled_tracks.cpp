@@ -16,11 +16,12 @@ int sample_of(double time_s, double step_s) {
 
 }  // namespace
 
-SampledTracks::SampledTracks(const TrackSet& set) : step_s_(set.step_s) {
+SampledTracks::SampledTracks(const TrackSet& set, double noise) : step_s_(set.step_s) {
   for (const Track& track : set.tracks) {
     Recorded recorded;
     recorded.agent = track.at(track.time_s.front()).value();
     recorded.agent.velocity.setZero();
+    recorded.agent.noise_m = noise;
     recorded.first = sample_of(track.time_s.front(), step_s_);
     for (std::size_t i = 0; i < track.time_s.size(); ++i) {
       const int sample = sample_of(track.time_s[i], step_s_);

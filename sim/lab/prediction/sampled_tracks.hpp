@@ -11,7 +11,8 @@ namespace headland {
 /// A recording by the number of the sample, as it was taken: nothing is interpolated.
 class SampledTracks {
  public:
-  explicit SampledTracks(const TrackSet& set);
+  /// `noise` is the standard deviation of its positions [m], for those who see them.
+  explicit SampledTracks(const TrackSet& set, double noise = 0.0);
 
   double step_s() const { return step_s_; }
   int samples() const { return samples_; }

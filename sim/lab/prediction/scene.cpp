@@ -38,7 +38,8 @@ Result<RecordedScene> read_scene(const Recording& recording, const std::string& 
   scene.name = recording.name.empty() ? file.parent_path().filename().string() : recording.name;
   if (recording.kind == RecordingKind::kSheep) scene.kind = AgentKind::kSheep;
   for (std::size_t i = 0; i < tracks->size(); ++i) {
-    if (is_in(recording.part, i)) scene.recordings.emplace_back((*tracks)[i]);
+    if (!is_in(recording.part, i)) continue;
+    scene.recordings.emplace_back((*tracks)[i], recording.noise_m);
   }
   if (scene.recordings.empty()) {
     return fail(ErrorCode::kOutOfRange, fmt::format("{}.part leaves no recording", place),
