@@ -53,7 +53,9 @@ Eigen::Matrix2f growth(const Eigen::Ref<const Eigen::VectorXf>& output, const Ve
   local << a * a, ab, ab, b * b;
   Eigen::Matrix2f turn;
   turn << heading.x(), -heading.y(), heading.y(), heading.x();
-  return turn * local * turn.transpose();
+  Eigen::Matrix2f grown = turn * local * turn.transpose();
+  grown(1, 0) = grown(0, 1);  // to the last bit
+  return grown;
 }
 
 }  // namespace
