@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/interrupt.hpp"
 #include "apps/output_files.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/planned_mission.hpp"
@@ -24,10 +25,13 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-FleetRun drive(const PlannedMission& planned, double realtime) {
+// Ctrl-C ends the run; what was driven is reported.
+Result<FleetRun> drive(const PlannedMission& planned, double realtime) {
   ProgressBar bar("driving");
+  const InterruptGuard guard;
   const auto begin = Clock::now();
-  const auto progress = [&](double fraction, double time_s) {
+  RunHooks hooks;
+  hooks.progress = [&](double fraction, double time_s) {
     bar.update(fraction);
     if (realtime <= 0.0) return;
     const double ahead = time_s / realtime - seconds_since(begin);
@@ -35,8 +39,13 @@ FleetRun drive(const PlannedMission& planned, double realtime) {
   };
   const Mission& mission = planned.mission;
   const SteadyClock clock;  // for deadlines, if any are set
+  hooks.clock = &clock;
+  hooks.stop = InterruptGuard::interrupted;
+  hooks.replan = [&](std::size_t vehicle, const VehiclePlan& plan, const Standing& standing) {
+    return replan(mission, vehicle, plan, standing);
+  };
   return drive_fleet(planned.plan.vehicles, mission.visits, mission.farm, mission.ground,
-                     planned.config.simulation, progress, &clock);
+                     planned.config.simulation, hooks);
 }
 
 }  // namespace
@@ -50,12 +59,17 @@ int run_command(const CommonOptions& options, double realtime) {
   if (auto ready = prepare_output(options.out); !ready) {
     return report_error(ready.error(), options);
   }
-  const auto planned = plan_from_file(options);
+  auto planned = plan_from_file(options);
   if (!planned) return report_error(planned.error(), options);
   if (!options.json) fmt::print("{}\n", plan_text(planned->plan, planned->planning_s));
   std::fflush(stdout);
   const auto begin = Clock::now();
-  const FleetRun run = drive(*planned, realtime);
+  const auto driven = drive(*planned, realtime);
+  if (!driven) return report_error(driven.error(), options);
+  const FleetRun& run = *driven;
+  for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
+    planned->plan.vehicles[v] = run.vehicles[v].driven;
+  }
   const double real_time_factor = run.metrics.duration_s / std::max(1e-9, seconds_since(begin));
 
   const std::string metrics =

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/geometry/region.hpp"
+
 namespace headland {
 namespace {
 
@@ -83,11 +85,6 @@ ClearanceMap rasterise(const Box& box, double cell, double margin, const Blocks&
   return ClearanceMap(corner, cell, columns, rows, blocked);
 }
 
-bool any_contains(const std::vector<Polygon>& polygons, const Point2& p) {
-  return std::any_of(polygons.begin(), polygons.end(),
-                     [&](const Polygon& polygon) { return contains(polygon, p); });
-}
-
 }  // namespace
 
 ClearanceMap::ClearanceMap(const Point2& corner, double cell, int columns, int rows,
@@ -122,13 +119,13 @@ ClearanceMap::ClearanceMap(const Point2& corner, double cell, int columns, int r
 ClearanceMap ClearanceMap::around(const std::vector<Polygon>& free, double cell, double margin) {
   if (free.empty()) return {};
   return rasterise(Box(free), cell, margin,
-                   [&](const Point2& p) { return !any_contains(free, p); });
+                   [area = Region(free)](const Point2& p) { return !area.contains(p); });
 }
 
 ClearanceMap ClearanceMap::of(const std::vector<Polygon>& obstacles, double cell, double reach) {
   if (obstacles.empty()) return {};
   return rasterise(Box(obstacles), cell, reach,
-                   [&](const Point2& p) { return any_contains(obstacles, p); });
+                   [area = Region(obstacles)](const Point2& p) { return area.contains(p); });
 }
 
 // The nearest cell of the grid is nearer to the point than any obstacle is.

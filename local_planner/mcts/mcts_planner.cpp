@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "local_planner/mcts/internal/tree.hpp"
+#include "local_planner/outline.hpp"
+#include "local_planner/rollout.hpp"
 
 namespace headland {
 
@@ -15,6 +17,7 @@ namespace {
 
 constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
 constexpr double kStands = 0.05;         // slower than this [m/s]
+constexpr double kCommit = 0.5;          // what is driven before the next plan can stop it [s]
 constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
 
@@ -49,7 +52,8 @@ struct MctsPlanner::Impl {
       : vehicle(vehicle_in),
         config(config_in),
         moves(vehicle_in, config_in.step_s),
-        predictor(std::move(predictor_in)) {
+        predictor(std::move(predictor_in)),
+        discs(vehicle_in.footprint) {
     const Footprint& outline = vehicle.footprint;
     centre = 0.5 * (outline.front_m - outline.rear_m);
     radius = std::hypot(0.5 * (outline.front_m + outline.rear_m), 0.5 * outline.width_m);
@@ -60,11 +64,13 @@ struct MctsPlanner::Impl {
   }
 
   void set_task(const LocalScene& scene, const LocalGoal& goal);
-  void set_forecasts(const LocalScene& scene, const Motion& root);
-  std::vector<Point2> robot_path(const Motion& root, int action) const;
+  double impatience(const LocalScene& scene) const;
+  double risk_here(const LocalScene& scene) const;
+  void set_forecasts(const LocalScene& scene, const mcts::Motion& root);
+  std::vector<Point2> robot_path(const mcts::Motion& root, int action) const;
   double tree_match(const LocalScene& scene) const;
-  void set_tree(const LocalScene& scene, const Motion& root);
-  void write(const LocalScene& scene, LocalPlan& plan) const;
+  void set_tree(const LocalScene& scene, const mcts::Motion& root);
+  void write(const LocalScene& scene, LocalPlan& plan);
 
   Vehicle vehicle;
   MctsConfig config;
@@ -72,6 +78,8 @@ struct MctsPlanner::Impl {
   std::unique_ptr<Predictor> predictor;
   double centre;
   double radius;
+  OutlineDiscs discs;
+  LocalPlan scratch;
 
   std::vector<Forecast> forecasts;
   Prediction prediction;
@@ -93,13 +101,17 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
   task.map = scene.map;
   task.radius = radius;
   task.centre = centre;
-  task.wanted = goal.speed_mps;
+  task.wanted = speed_within(vehicle, goal.speed_mps, Gear::kForward, 0.0);
   task.final = true;
+  task.along = {0.0, 0.0};
   Point2 place = goal.place;
   if (goal.path != nullptr && !goal.path->empty() && goal.s + config.lookahead_m < goal.place_s) {
-    place = goal.path->at(goal.s + config.lookahead_m).pose.position();
+    const PathSample ahead = goal.path->at(goal.s + config.lookahead_m);
+    place = ahead.pose.position();
+    task.along = ahead.pose.heading();
     task.final = false;
   }
+  task.detour = config.detour_s * impatience(scene);
   task.goal = place - here;
   task.accuracy = task.final ? kAim * std::max(0.0, goal.accuracy_m) : 0.5;
   const double distance = task.goal.norm();
@@ -107,9 +119,9 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
 }
 
 // Where the robot's centre would be if it began with that action and went on by itself.
-std::vector<Point2> MctsPlanner::Impl::robot_path(const Motion& root, int action) const {
+std::vector<Point2> MctsPlanner::Impl::robot_path(const mcts::Motion& root, int action) const {
   std::vector<Point2> path;
-  Motion at = root;
+  mcts::Motion at = root;
   for (int k = 0; k < config.depth_count; ++k) {
     const bool slower = cluster_of(action) == Manoeuvres::kTurns;
     const int heading = moves.towards(at, task.goal.x(), task.goal.y(), task.wanted);
@@ -121,10 +133,26 @@ std::vector<Point2> MctsPlanner::Impl::robot_path(const Motion& root, int action
   return path;
 }
 
-void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const Motion& root) {
+// Counts standing: 1 while the robot moves.
+double MctsPlanner::Impl::impatience(const LocalScene& scene) const {
+  return 1.0 + (scene.time_s - moved_s) / config.patience_s;
+}
+
+// In the open, keeping well away costs little; in a crowd nobody would get on.
+double MctsPlanner::Impl::risk_here(const LocalScene& scene) const {
+  const Point2 here = robot_centre(scene.robot.state);
+  const auto near = std::count_if(scene.agents.begin(), scene.agents.end(), [&](const Agent& a) {
+    return (a.position - here).norm() <= config.view_m;
+  });
+  const double density = static_cast<double>(near) / (kPi * config.view_m * config.view_m);
+  const double crowded = std::min(1.0, density / config.crowd_per_m2);
+  return config.open_risk_ratio + crowded * (config.risk_ratio - config.open_risk_ratio);
+}
+
+void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motion& root) {
   const Point2 here = scene.robot.state.pose.position();
   MctsConfig impatient = config;
-  impatient.risk_ratio /= 1.0 + (scene.time_s - moved_s) / config.patience_s;
+  impatient.risk_ratio = risk_here(scene) / impatience(scene);
   if (predictor == nullptr) {
     coast(scene.agents, config.step_s, config.depth_count, prediction);
     forecasts.resize(1);
@@ -170,14 +198,14 @@ double MctsPlanner::Impl::tree_match(const LocalScene& scene) const {
   return count == 0 ? 0.5 : sum / (2.0 * count);
 }
 
-void MctsPlanner::Impl::set_tree(const LocalScene& scene, const Motion& root) {
+void MctsPlanner::Impl::set_tree(const LocalScene& scene, const mcts::Motion& root) {
   const double gamma = tree_match(scene);
   kept = gamma > 0.0 ? tree.advance(found.first_action, root, gamma) : 0;
   if (kept == 0) tree.reset(root);
 }
 
 // The plan in short steps, driven by the vehicle's own model.
-void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) const {
+void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) {
   if (found.braking) {
     brake(vehicle, scene.robot.state, scene.time_s, LocalStatus::kBraking, plan);
     if (std::abs(scene.robot.state.speed) < 1e-3) plan.status = LocalStatus::kBlocked;
@@ -194,6 +222,10 @@ void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) const {
       plan.states.push_back(step_vehicle(
           vehicle, now, moves.command(vehicle, now, action, plan.step_s), plan.step_s));
     }
+  }
+  // The tree looks at discs of the outline, level by level; this, at what is driven.
+  if (!stays_clear(vehicle, discs, scene.map, plan, kCommit, scratch)) {
+    brake(vehicle, scene.robot.state, scene.time_s, LocalStatus::kBraking, plan);
   }
 }
 
@@ -219,7 +251,7 @@ void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const 
   VehicleState local = scene.robot.state;
   local.pose.x = 0.0;
   local.pose.y = 0.0;
-  const Motion root = d.moves.from(local);
+  const mcts::Motion root = d.moves.from(local);
   d.set_tree(scene, root);
   d.set_forecasts(scene, root);
   d.tree.begin(d.task);

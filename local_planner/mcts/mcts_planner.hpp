@@ -31,6 +31,8 @@ struct MctsConfig {
   double view_m = 12.0;
   double clearance_m = 0.42;
   double risk_ratio = 10.0;
+  double open_risk_ratio = 100.0;
+  double crowd_per_m2 = 0.06;
   double patience_s = 3.0;
   double contact_s = 60.0;
   double trust_s = 4.0;
@@ -39,6 +41,7 @@ struct MctsConfig {
   double pace_ratio = 0.75;
   double progress_ratio = 0.05;
   double detour_s = 2.0;
+  double return_per_m = 0.1;
   double influence_m = 3.0;
   double match_m = 0.25;
   double stale_s = 0.5;
@@ -60,9 +63,15 @@ struct MctsConfig {
     v("clearance_m", clearance_m, config::kPositive,
       "Nearer to an agent than this, outline to outline, is a risk [m]");
     v("risk_ratio", risk_ratio, config::kNonNegative,
-      "A second at the brink of contact costs this many seconds");
+      "A second at the brink of contact costs this many seconds in a crowd ...");
+    v("open_risk_ratio", open_risk_ratio, config::kNonNegative,
+      "... and this many where hardly anybody is: there, keeping away costs little");
+    v("crowd_per_m2", crowd_per_m2, config::kPositive,
+      "It is a crowd from so many agents per area on, within view_m [1/m2]");
     v("patience_s", patience_s, config::kPositive,
-      "After standing so long, risk counts half, after twice as long a third: agents give way [s]");
+      "After standing so long, risk counts half and a detour twice, after twice as long a third "
+      "and "
+      "three times: agents give way, or do not [s]");
     v("contact_s", contact_s, config::kNonNegative, "What a contact costs [s]");
     v("trust_s", trust_s, config::kPositive,
       "Risk counts less the farther ahead: agents react; it falls to 1/e in this time [s]");
@@ -76,6 +85,8 @@ struct MctsConfig {
       "now");
     v("detour_s", detour_s, config::kNonNegative,
       "What it costs to go around somebody who stands beyond the last step [s]");
+    v("return_per_m", return_per_m, config::kNonNegative,
+      "Each second so far from the path costs this many more [1/m]");
     v("influence_m", influence_m, config::kPositive, "d of (003) Eq. 2 [m]");
     v("match_m", match_m, config::kPositive,
       "epsilon of (003) Eq. 3: the tree is kept if all agents are this near to where it had them "

@@ -39,6 +39,7 @@ struct CrowdAgent {
   double radius_m = 0.5;       ///< seed 003
   double speed_mps = 1.0;      ///< that it prefers, >= 0; a herd's are its model's
   double max_speed_mps = 1.5;  ///< >= 0; seed 003: 0.1 to 1.5 m/s; a herd's are its model's
+  int group = 0;               ///< for the rule of goals
   double flight_m = -1.0;      ///< in a herd: flees from whom is nearer; < 0: its model's
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include <fmt/format.h>
@@ -20,6 +21,12 @@ constexpr double kWindow = 3.0;
 constexpr double kOnCusp = 1e-6;
 // Slower counts as standing [m/s]: a drive with a lag never quite stands.
 constexpr double kStill = 1e-3;
+// To where the local planner drives: the end of a stretch of one gear [m].
+constexpr double kPlaceAccuracy = 0.3;
+// Nearer than this to the end of such a stretch the path is not left [m].
+constexpr double kNoLeavingBefore = 5.0;
+constexpr double kAgentPeriod = 0.5;    // of FleetRun::agents [s]
+constexpr double kReplanPeriod = 60.0;  // [s]
 
 // Who charges where, and who waits: first come, first served.
 class ChargerSlots {
@@ -50,16 +57,20 @@ class ChargerSlots {
   std::vector<std::vector<int>> queues_;  // of vehicles, at each charger
 };
 
-// Rows, and those of which all parts are done, by whichever vehicle.
+// Rows, and those of which all parts are done, by whichever vehicle. What was planned and is no leg
+// of what was driven is not done.
 void count_rows(std::span<const VehiclePlan> plans, std::span<const Run> runs,
                 RunMetrics& metrics) {
   std::map<std::string, bool> done;
   for (std::size_t v = 0; v < plans.size(); ++v) {
-    for (std::size_t i = 0; i < plans[v].legs.size(); ++i) {
-      const PlanLeg& leg = plans[v].legs[i];
-      if (leg.kind != LegKind::kRow) continue;
-      const auto row = done.emplace(leg.id, true).first;
+    const std::vector<PlanLeg>& driven = runs[v].driven.legs;
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      if (driven[i].kind != LegKind::kRow) continue;
+      const auto row = done.emplace(driven[i].id, true).first;
       row->second = row->second && runs[v].leg_done[i];
+    }
+    for (const PlanLeg& leg : plans[v].legs) {
+      if (leg.kind == LegKind::kRow) done.emplace(leg.id, false);
     }
   }
   metrics.rows_total = static_cast<int>(done.size());
@@ -88,8 +99,9 @@ class Driver {
  public:
   Driver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits, const Farm& farm,
          const Ground& ground, const SimulationConfig& config, ChargerSlots& slots,
-         const Clock* clock)
+         const ClearanceMap* obstacles, const RunHooks& hooks)
       : number_(number),
+        given_(plan),
         plan_(plan),
         visits_(visits),
         farm_(farm),
@@ -98,15 +110,16 @@ class Driver {
         slots_(slots),
         vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
                  config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
-        tracker_(make_tracker(plan.vehicle, config.control, config.sensors, config.step_s, clock)),
+        tracker_(
+            make_tracker(plan.vehicle, config.control, config.sensors, config.step_s, hooks.clock)),
         estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
-        worst_(plan.legs.size(), 0.0) {
-    run_.leg_done.assign(plan.legs.size(), false);
-    for (const PlanStage& stage : plan.stages) total_length_ += stage.path.length();
-    for (const PlanLeg& leg : plan.legs) {
-      leg_speed_.push_back(leg_speed(plan.vehicle, leg.kind));
-      leg_working_.push_back(leg.kind == LegKind::kRow);
+        hooks_(hooks) {
+    if (obstacles != nullptr) {
+      local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, *obstacles,
+                                            config.seed + static_cast<std::uint64_t>(number),
+                                            config.step_s);
     }
+    fit_to_legs();
     if (estimator_ != nullptr) estimator_->reset(vehicle_.truth(), 0.0);
     begin_stage(0.0);
   }
@@ -116,8 +129,12 @@ class Driver {
   double driven() const { return done() ? total_length_ : stage_start_s_ + progress_s_; }
   double total_length() const { return total_length_; }
 
-  // The tick that ends at `time` [s].
-  void step(double time) {
+  const VehicleState& truth() const { return vehicle_.truth(); }
+  const Vehicle& vehicle() const { return plan_.vehicle; }
+
+  // The tick that ends at `time` [s]; `agents` at its begin.
+  void step(double time, std::span<const Agent> agents) {
+    agents_ = agents;
     if (state_ != State::kDone) observe(time - config_.step_s);
     switch (state_) {
       case State::kDriving:
@@ -134,7 +151,17 @@ class Driver {
     }
   }
 
+  // What came of the tick; `agents` at its end.
+  void count(std::span<const Agent> agents) {
+    if (local_ != nullptr && state_ != State::kDone) local_->count(vehicle_.truth(), agents);
+  }
+
+  void stop(double time) {
+    if (!done()) give_up("it was stopped", time);
+  }
+
   Run finish() {
+    run_.driven = std::move(plan_);
     summarise();
     return std::move(run_);
   }
@@ -145,21 +172,44 @@ class Driver {
   const PlanStage& stage() const { return plan_.stages[stage_]; }
   const PlanLeg& stop() const { return plan_.legs[static_cast<std::size_t>(stage().stop_leg)]; }
 
+  // Sizes what is kept leg by leg.
+  void fit_to_legs() {
+    run_.leg_done.resize(plan_.legs.size(), false);
+    worst_.resize(plan_.legs.size(), 0.0);
+    leg_speed_.clear();
+    leg_working_.clear();
+    for (const PlanLeg& leg : plan_.legs) {
+      leg_speed_.push_back(leg_speed(plan_.vehicle, leg.kind));
+      leg_working_.push_back(leg.kind == LegKind::kRow);
+    }
+    total_length_ = 0.0;
+    for (const PlanStage& stage : plan_.stages) total_length_ += stage.path.length();
+  }
+
   void begin_stage(double time) {
     if (stage_ >= plan_.stages.size()) {
       state_ = State::kDone;
       run_.metrics.duration_s = time;
       return;
     }
+    if (stage().path.empty()) {
+      reference_ = {};
+      return arrive(time);
+    }
+    // Nothing drives a stage at less than a tenth of its planned pace.
+    give_up_at_ = time + 60.0 + 10.0 * planned_duration(stage());
+    follow(stage().path, time);
+  }
+
+  // Starts the tracker on a path: a stage's, or what is left of it.
+  void follow(const Path& path, double time) {
     progress_s_ = 0.0;
-    if (stage().path.empty()) return arrive(time);
-    reference_ = Reference{stage().path, leg_speed_, {}, leg_working_};  // the tracker points to it
+    reached_s_ = 0.0;
+    reference_ = Reference{path, leg_speed_, {}, leg_working_};  // the tracker points to it
     reference_.zones = energy_zones(reference_, plan_.vehicle, config_.control.limits, ground_);
     if (const auto started = tracker_->start(reference_); !started) {
       return give_up(started.error().what, time);
     }
-    // Nothing drives a stage at less than a tenth of its planned pace.
-    give_up_at_ = time + 60.0 + 10.0 * planned_duration(stage());
     state_ = State::kDriving;
   }
 
@@ -173,27 +223,149 @@ class Driver {
   }
 
   void drive(double time) {
-    const TrackOutput output = tracker_->step(known_, config_.step_s);
-    told_ = output.command;
-    if (output.stale) ++run_.metrics.stale_plan_count;
-    const Point2 before = vehicle_.truth().pose.position();
-    if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
-      return arrive(time);
+    LocalOutput local;
+    if (local_ != nullptr) {
+      local = local_->step(time - config_.step_s, known_, local_goal(), local_view(time), agents_);
+      if (local.gave_back && !take_up_path(time)) return;
     }
-    if (failed(output.status)) return give_up(describe(output.status), time);
-    const Path& path = stage().path;
-    vehicle_.step(output.command, plan_.legs[static_cast<std::size_t>(path.at(output.s).leg)].kind);
-    record(path, output, before, time);
-    if (std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
+    const Point2 before = vehicle_.truth().pose.position();
+    if (local.driving == Driving::kLocal) {
+      told_ = local.command;
+      reached_s_ = nearest_s();
+    } else {
+      const TrackOutput output = tracker_->step(known_, config_.step_s);
+      told_ = local_ != nullptr ? local_->guard(output.command) : output.command;
+      reached_s_ = output.s;
+      if (output.stale) ++run_.metrics.stale_plan_count;
+      if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
+        return arrive(time);
+      }
+      if (failed(output.status)) return give_up(describe(output.status), time);
+    }
+    const int leg = reference_.path.at(reached_s_).leg;
+    vehicle_.step(told_, plan_.legs[static_cast<std::size_t>(leg)].kind);
+    record(before, local.driving, time);
+    if (local.driving == Driving::kPath &&
+        std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
       return give_up("the vehicle left its path", time);
     }
     if (vehicle_.soc() <= 0.0) return give_up("the battery is empty", time);
-    if (time > give_up_at_) give_up("the vehicle does not get on", time);
+    if (time > give_up_at_) return give_up("the vehicle does not get on", time);
+    const int now = run_.trace.back().leg;
+    if (local_ != nullptr && local.driving == Driving::kPath && now != checked_leg_) {
+      checked_leg_ = now;
+      check_reserve(time);
+    }
+  }
+
+  // What the local planner drives to: along the path, as far as its next cusp.
+  LocalGoal local_goal() const {
+    const Path& path = reference_.path;
+    const PathSample at = path.at(reached_s_);
+    const PathSegment& segment = path.segments()[static_cast<std::size_t>(at.segment)];
+    LocalGoal goal;
+    goal.path = &path;
+    goal.s = reached_s_;
+    goal.place = path.at(segment.end_s - kOnCusp).pose.position();
+    goal.place_s = segment.end_s;
+    goal.accuracy_m = kPlaceAccuracy;
+    goal.speed_mps = leg_speed_[static_cast<std::size_t>(at.leg)];
+    return goal;
+  }
+
+  ArbiterView local_view(double time) {
+    const PathSample at = reference_.path.at(reached_s_);
+    const PathSegment& segment = reference_.path.segments()[static_cast<std::size_t>(at.segment)];
+    ArbiterView view;
+    view.may_leave = plan_.legs[static_cast<std::size_t>(at.leg)].kind != LegKind::kRow &&
+                     at.gear == Gear::kForward && segment.end_s - reached_s_ > kNoLeavingBefore;
+    if (time >= spare_until_) {
+      spare_ratio_ = spare() / plan_.vehicle.battery.capacity_j();
+      spare_until_ = time + 1.0;
+    }
+    view.spare_ratio = spare_ratio_;
+    return view;
+  }
+
+  // Progress of a vehicle that is not on the path: never back, never across a cusp.
+  double nearest_s() const {
+    const Path& path = reference_.path;
+    const PathSegment& segment =
+        path.segments()[static_cast<std::size_t>(path.at(reached_s_).segment)];
+    const double ahead = std::min(reached_s_ + kWindow, segment.end_s - kOnCusp);
+    return path.project(known_.state.pose.position(), reached_s_, std::max(reached_s_, ahead)).s;
+  }
+
+  // Gives the tracker the rest of the path. False if nothing is left of it, or the tracker cannot.
+  bool take_up_path(double time) {
+    const double s = nearest_s();
+    stage_start_s_ += s;
+    const Path rest = reference_.path.slice(s, reference_.path.length());
+    if (rest.empty()) {
+      reference_ = {};
+      arrive(time);
+      return false;
+    }
+    follow(rest, time);
+    checked_leg_ = -1;
+    return state_ == State::kDriving;
+  }
+
+  double spare() const {
+    const int leg = reference_.path.at(reached_s_).leg;
+    const auto [begin, end] = reference_.path.leg_range(leg);
+    const double done = end > begin ? (reached_s_ - begin) / (end - begin) : 0.0;
+    return spare_energy(plan_, {leg, done}, vehicle_.soc());
+  }
+
+  // Plans what is left anew if the charge will not last; not within rows.
+  void check_reserve(double time) {
+    const int leg = reference_.path.at(reached_s_).leg;
+    if (!hooks_.replan || time < replan_from_ || spare() >= 0.0 ||
+        plan_.legs[static_cast<std::size_t>(leg)].kind == LegKind::kRow) {
+      return;
+    }
+    replan_from_ = time + kReplanPeriod;
+    const Standing standing{known_.state.pose, vehicle_.soc(), time, leg + 1};
+    auto anew = hooks_.replan(static_cast<std::size_t>(number_), plan_, standing);
+    if (!anew) {
+      ++run_.metrics.failed_replans;
+      return;
+    }
+    ++run_.metrics.replans;
+    go_on_by(std::move(*anew), leg + 1, time);
+  }
+
+  // From here on another plan is driven; its legs follow on those so far.
+  void go_on_by(VehiclePlan anew, int first_leg, double time) {
+    stage_start_s_ += reached_s_;
+    plan_.stages.resize(stage_ + 1);
+    double before = 0.0;
+    for (std::size_t i = 0; i < stage_; ++i) before += plan_.stages[i].path.length();
+    plan_.stages.back().path = plan_.stages.back().path.slice(0.0, stage_start_s_ - before);
+    plan_.stages.back().stop_leg = -1;
+    for (const PlanStage& stage : anew.stages) {
+      PlanStage& added = plan_.stages.emplace_back();
+      added.path.append(stage.path, first_leg);
+      added.stop_leg = stage.stop_leg < 0 ? -1 : stage.stop_leg + first_leg;
+    }
+    plan_.legs.resize(static_cast<std::size_t>(first_leg));
+    for (PlanLeg& leg : anew.legs) {
+      leg.begin_s += time;
+      leg.earliest_s += leg.earliest_s > 0.0 ? time : 0.0;
+      plan_.legs.push_back(std::move(leg));
+    }
+    plan_.energy_j = 0.0;
+    for (const PlanLeg& leg : plan_.legs) plan_.energy_j += leg.cost.energy_j;
+    plan_.finish_s = time + anew.finish_s;
+    fit_to_legs();
+    ++stage_;
+    begin_stage(time);
   }
 
   // At the stage's end: stand in the queue of a charger, at a visit, or go on.
   void arrive(double time) {
-    stage_start_s_ += stage().path.length();
+    stage_start_s_ += reference_.path.length();
     progress_s_ = 0.0;
     if (stage().stop_leg < 0) {
       ++stage_;
@@ -246,27 +418,30 @@ class Driver {
     return duration + 10.0 * static_cast<double>(driven.path.segments().size());
   }
 
-  // Projects the true position onto the path around the tracker's progress, never across a cusp
+  // Projects the true position onto the path around the vehicle's progress, never across a cusp
   // (the path runs back on itself there), and appends a trace row.
-  void record(const Path& path, const TrackOutput& output, const Point2& before, double time) {
+  void record(const Point2& before, Driving driving, double time) {
+    const Path& path = reference_.path;
     const VehicleState& truth = vehicle_.truth();
     // On a cusp the tracker is still on the segment that ends there.
-    const double s = std::max(0.0, output.s - kOnCusp);
+    const double s = std::max(0.0, reached_s_ - kOnCusp);
     const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(s).segment)];
     const Projection projection =
-        path.project(truth.pose.position(), std::max(segment.begin_s, output.s - kWindow),
-                     std::min(segment.end_s, output.s + kWindow));
+        path.project(truth.pose.position(), std::max(segment.begin_s, reached_s_ - kWindow),
+                     std::min(segment.end_s, reached_s_ + kWindow));
     const PathSample at = path.at(std::min(projection.s, segment.end_s - 1e-9));
     progress_s_ = projection.s;
     run_.trace.push_back({time, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed,
-                          truth.steering, output.command.yaw_rate, stage_start_s_ + projection.s,
+                          truth.steering, told_.yaw_rate, stage_start_s_ + projection.s,
                           projection.lateral_error, vehicle_.soc(), at.gear, at.leg,
                           vehicle_.slip(), known_.slip,
-                          (known_.state.pose.position() - before).norm()});
+                          (known_.state.pose.position() - before).norm(), driving});
     const auto leg = static_cast<std::size_t>(at.leg);
     worst_[leg] = std::max(worst_[leg], std::abs(projection.lateral_error));
     run_.leg_done[leg] = true;
-    if (truth.speed * sign(at.gear) < -1e-3) ++run_.metrics.wrong_gear_count;
+    if (driving == Driving::kPath && truth.speed * sign(at.gear) < -1e-3) {
+      ++run_.metrics.wrong_gear_count;
+    }
     run_.metrics.min_soc = std::min(run_.metrics.min_soc, vehicle_.soc());
   }
 
@@ -282,34 +457,43 @@ class Driver {
 
   void summarise() {
     RunMetrics& metrics = run_.metrics;
-    for (std::size_t i = 0; i < plan_.legs.size(); ++i) count_leg(i);
-    count_rows({&plan_, 1}, {&run_, 1}, metrics);
-    const double reserve = plan_.vehicle.battery.reserve_soc;
+    if (local_ != nullptr) metrics.encounters = local_->metrics();
+    for (std::size_t i = 0; i < run_.driven.legs.size(); ++i) count_leg(i);
+    for (const PlanLeg& leg : given_.legs) count_dropped(leg);
+    count_rows({&given_, 1}, {&run_, 1}, metrics);
+    const double reserve = given_.vehicle.battery.reserve_soc;
     metrics.reserve_kept = metrics.min_soc >= reserve - 1e-9;
     if (metrics.reason.empty() && !metrics.reserve_kept) {
       metrics.reason = fmt::format("{}: the charge fell to {:.1f} %, below the reserve of {:.1f} %",
-                                   plan_.id, 100.0 * metrics.min_soc, 100.0 * reserve);
+                                   given_.id, 100.0 * metrics.min_soc, 100.0 * reserve);
     }
-    if (metrics.reason.empty() && metrics.duration_s > plan_.shift_s) {
-      metrics.reason = fmt::format("{}: it was back {:.0f} s after its shift of {:.0f} s", plan_.id,
-                                   metrics.duration_s - plan_.shift_s, plan_.shift_s);
+    if (metrics.reason.empty() && metrics.duration_s > given_.shift_s) {
+      metrics.reason = fmt::format("{}: it was back {:.0f} s after its shift of {:.0f} s",
+                                   given_.id, metrics.duration_s - given_.shift_s, given_.shift_s);
     }
     const int missed_rows = metrics.rows_total - metrics.rows_done;
     const int missed_visits = metrics.visits_total - metrics.visits_done;
     metrics.completed = metrics.reason.empty() && missed_rows == 0 && missed_visits == 0;
+    const int replans = metrics.replans;
+    if (metrics.reason.empty() && replans > 0 && missed_rows + missed_visits > 0) {
+      metrics.reason = fmt::format(
+          "{}: {} rows and {} places were left out when the rest was planned anew, as the charge "
+          "would not have lasted",
+          given_.id, missed_rows, missed_visits);
+    }
     if (metrics.reason.empty() && missed_rows > 0) {
-      metrics.reason = fmt::format("{}: {} rows were driven with an error above {} m", plan_.id,
+      metrics.reason = fmt::format("{}: {} rows were driven with an error above {} m", given_.id,
                                    missed_rows, config_.row_tolerance_m);
     } else if (metrics.reason.empty() && missed_visits > 0) {
       metrics.reason =
-          fmt::format("{}: {} places were not reached closely enough", plan_.id, missed_visits);
+          fmt::format("{}: {} places were not reached closely enough", given_.id, missed_visits);
     }
     metrics.energy_j = vehicle_.drawn_j();
   }
 
   void count_leg(std::size_t i) {
     RunMetrics& metrics = run_.metrics;
-    const PlanLeg& leg = plan_.legs[i];
+    const PlanLeg& leg = run_.driven.legs[i];
     if (leg.visit >= 0) {
       ++metrics.visits_total;
       metrics.visits_done += run_.leg_done[i] ? 1 : 0;
@@ -321,8 +505,18 @@ class Driver {
     run_.leg_done[i] = run_.leg_done[i] && !broken_off && worst_[i] <= config_.row_tolerance_m;
   }
 
+  // A visit that a new plan no longer holds.
+  void count_dropped(const PlanLeg& planned) {
+    if (planned.visit < 0) return;
+    const auto& legs = run_.driven.legs;
+    const bool kept = std::any_of(legs.begin(), legs.end(),
+                                  [&](const PlanLeg& leg) { return leg.visit == planned.visit; });
+    if (!kept) ++run_.metrics.visits_total;
+  }
+
   int number_;
-  const VehiclePlan& plan_;
+  const VehiclePlan& given_;
+  VehiclePlan plan_;  // as it is driven
   const std::vector<Visit>& visits_;
   const Farm& farm_;
   const Ground& ground_;
@@ -331,6 +525,9 @@ class Driver {
   SimulatedVehicle vehicle_;
   std::unique_ptr<Tracker> tracker_;
   std::unique_ptr<Estimator> estimator_;
+  std::unique_ptr<LocalLayer> local_;  // null: nobody is about
+  const RunHooks& hooks_;
+  std::span<const Agent> agents_;
   VehicleEstimate known_;
   Command told_;  // at the last tick
   std::vector<double> leg_speed_;
@@ -344,23 +541,42 @@ class Driver {
   double arrived_ = 0.0;     // at the stop
   double until_ = 0.0;       // it stands
   double give_up_at_ = 0.0;  // if the stage is not done by then
-  double progress_s_ = 0.0;  // on the stage's path
+  double progress_s_ = 0.0;  // of the true position on the path that is followed [m]
+  double reached_s_ = 0.0;   // ... and as far as the vehicle knows
+  int checked_leg_ = -1;     // for its energy
+  double replan_from_ = 0.0;
+  double spare_ratio_ = 1.0;  // of the battery, above the reserve
+  double spare_until_ = 0.0;  // that is known well enough
   double stage_start_s_ = 0.0;
   double total_length_ = 0.0;
 };
 
-// Tracking errors of several vehicles as one sequence; legs numbered on.
-TrackingMetrics fleet_tracking(std::span<const VehiclePlan> plans, std::span<const Run> runs) {
+// Tracking errors of several vehicles as one sequence; legs numbered on. Only where the path is
+// followed.
+TrackingMetrics fleet_tracking(std::span<const Run> runs) {
   std::vector<PathError> errors;
   std::vector<LegKind> kinds;
   for (std::size_t v = 0; v < runs.size(); ++v) {
     const int offset = static_cast<int>(kinds.size());
     for (const TraceRow& row : runs[v].trace) {
+      if (row.driving == Driving::kLocal) continue;  // off the path on purpose
       errors.push_back({row.s_m, row.cross_track_m, std::abs(row.cross_track_m), offset + row.leg});
     }
-    for (const PlanLeg& leg : plans[v].legs) kinds.push_back(leg.kind);
+    for (const PlanLeg& leg : runs[v].driven.legs) kinds.push_back(leg.kind);
   }
   return tracking_metrics(errors, kinds);
+}
+
+void add(const EncounterMetrics& one, EncounterMetrics& all) {
+  all.takeovers += one.takeovers;
+  all.local_s += one.local_s;
+  all.held_s += one.held_s;
+  all.protective_stops += one.protective_stops;
+  all.near_collisions += one.near_collisions;
+  all.robot_near += one.robot_near;
+  all.collisions += one.collisions;
+  all.robot_collisions += one.robot_collisions;
+  all.least_gap_m = std::min(all.least_gap_m, one.least_gap_m);
 }
 
 RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vector<Run>& runs) {
@@ -380,9 +596,12 @@ RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vecto
     all.reserve_kept = all.reserve_kept && one.reserve_kept;
     all.wrong_gear_count += one.wrong_gear_count;
     all.stale_plan_count += one.stale_plan_count;
+    all.replans += one.replans;
+    all.failed_replans += one.failed_replans;
+    add(one.encounters, all.encounters);
   }
   count_rows(plans, runs, all);
-  all.tracking = fleet_tracking(plans, runs);
+  all.tracking = fleet_tracking(runs);
   return all;
 }
 
@@ -415,35 +634,83 @@ std::vector<FleetTick> fleet_ticks(const FleetRun& run, double period) {
   return ticks;
 }
 
-FleetRun drive_fleet(const std::vector<VehiclePlan>& plans, const std::vector<Visit>& visits,
-                     const Farm& farm, const Ground& ground, const SimulationConfig& config,
-                     const Progress& progress, const Clock* clock) {
+namespace {
+
+// The crowd of a run, and what vehicles keep off when they leave their paths.
+struct Surroundings {
+  Crowd crowd;
+  ClearanceMap obstacles;
+};
+
+Result<std::optional<Surroundings>> surroundings(const std::vector<VehiclePlan>& plans,
+                                                 const Farm& farm, const SimulationConfig& config) {
+  if (!config.agents.anyone()) return std::nullopt;
+  std::vector<Point2> starts;
+  for (const VehiclePlan& plan : plans) starts.push_back(plan.start.position());
+  auto crowd = make_crowd(config.agents, farm, starts, config.seed);
+  if (!crowd) return tl::unexpected<Error>(crowd.error());
+  return Surroundings{std::move(*crowd), obstacles_of(farm)};
+}
+
+CrowdRobot body_of(const Driver& driver, double share) {
+  const OutlineDisc disc(driver.vehicle().footprint);
+  const VehicleState& truth = driver.truth();
+  return {disc.centre(truth.pose), truth.speed * truth.pose.heading(), disc.radius, share};
+}
+
+}  // namespace
+
+Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
+                             const std::vector<Visit>& visits, const Farm& farm,
+                             const Ground& ground, const SimulationConfig& config,
+                             const RunHooks& hooks) {
+  auto around = surroundings(plans, farm, config);
+  if (!around) return tl::unexpected<Error>(around.error());
+  std::optional<Surroundings>& others = *around;
   ChargerSlots slots(farm);
   std::vector<Driver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
-    drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots, clock);
+    drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots,
+                         others ? &others->obstacles : nullptr, hooks);
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {
     return std::all_of(drivers.begin(), drivers.end(), [](const Driver& d) { return d.done(); });
   };
+  FleetRun run;
   double next_progress = 0.0;
+  double next_frame = 0.0;
   for (long tick = 1; !all_done(); ++tick) {
     const double time = static_cast<double>(tick) * config.step_s;
-    for (Driver& driver : drivers) driver.step(time);
-    if (!progress || time < next_progress) continue;
+    std::vector<CrowdRobot> bodies;
+    if (others) {
+      for (const Driver& driver : drivers) {
+        bodies.push_back(body_of(driver, config.agents.robot_share_ratio));
+      }
+    }
+    const auto agents = [&] { return others ? others->crowd.agents() : std::span<const Agent>{}; };
+    for (Driver& driver : drivers) driver.step(time, agents());
+    if (others) {
+      others->crowd.step(config.step_s, bodies);
+      for (Driver& driver : drivers) driver.count(agents());
+      if (time >= next_frame) {
+        next_frame += kAgentPeriod;
+        run.agents.push_back({time, {agents().begin(), agents().end()}});
+      }
+    }
+    if (hooks.stop && hooks.stop()) {
+      for (Driver& driver : drivers) driver.stop(time);
+    }
+    if (!hooks.progress || time < next_progress) continue;
     next_progress += kProgressPeriod;
     double driven = 0.0;
     for (const Driver& driver : drivers) driven += driver.driven();
-    progress(driven / std::max(total, 1.0), time);
+    hooks.progress(driven / std::max(total, 1.0), time);
   }
-  FleetRun run;
   for (Driver& driver : drivers) run.vehicles.push_back(driver.finish());
-  for (std::size_t v = 0; v < plans.size(); ++v) {
-    run.vehicles[v].metrics.tracking = fleet_tracking({&plans[v], 1}, {&run.vehicles[v], 1});
-  }
+  for (Run& one : run.vehicles) one.metrics.tracking = fleet_tracking({&one, 1});
   run.metrics = fleet_metrics(plans, run.vehicles);
   return run;
 }

@@ -130,21 +130,22 @@ inline std::vector<std::pair<std::string, LocalGoal>> nasty_goals(const Path& pa
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
   static const Path kNoPath;
-  return {{"ahead", {&path, 1.0, {20.0, 0.0}, 1.0, 1.2}},
+  return {{"ahead", {&path, 1.0, {15.0, 0.0}, 1.0, 1.2, 15.0}},
           {"without a path", {nullptr, 0.0, {12.0, 5.0}, 0.5, 1.0}},
           {"empty path", {&kNoPath, 0.0, {12.0, 5.0}, 0.5, 1.0}},
           {"here", {nullptr, 0.0, {0.0, 0.0}, 0.5, 1.0}},
           {"close behind", {nullptr, 0.0, {-1.0, 0.3}, 0.1, 1.0}},
-          {"beyond the path", {&path, 1e9, {20.0, 0.0}, 1.0, 1.0}},
-          {"before the path", {&path, -50.0, {20.0, 0.0}, 1.0, 1.0}},
+          {"beyond the path", {&path, 1e9, {20.0, 0.0}, 1.0, 1.0, 1e9}},
+          {"before the path", {&path, -50.0, {20.0, 0.0}, 1.0, 1.0, -40.0}},
+          {"a place beside the path", {&path, 0.0, {20.0, 0.0}, 1.0, 1.0, 15.0}},
           {"another continent", {nullptr, 0.0, {1e7, -1e7}, 1.0, 1.0}},
-          {"faster than light", {&path, 0.0, {20.0, 0.0}, 1.0, 1e9}},
-          {"hardly moving", {&path, 0.0, {20.0, 0.0}, 1.0, 1e-9}},
-          {"not moving", {&path, 0.0, {20.0, 0.0}, 1.0, 0.0}},
-          {"accuracy below nothing", {&path, 0.0, {20.0, 0.0}, -1.0, 1.0}},
-          {"no number", {&path, 0.0, {nan, 0.0}, 1.0, 1.0}},
-          {"infinite", {&path, 0.0, {inf, 0.0}, 1.0, inf}},
-          {"progress is no number", {&path, nan, {20.0, 0.0}, 1.0, 1.0}}};
+          {"faster than light", {&path, 0.0, {15.0, 0.0}, 1.0, 1e9, 15.0}},
+          {"hardly moving", {&path, 0.0, {15.0, 0.0}, 1.0, 1e-9, 15.0}},
+          {"not moving", {&path, 0.0, {15.0, 0.0}, 1.0, 0.0, 15.0}},
+          {"accuracy below nothing", {&path, 0.0, {15.0, 0.0}, -1.0, 1.0, 15.0}},
+          {"no number", {&path, 0.0, {nan, 0.0}, 1.0, 1.0, 15.0}},
+          {"infinite", {&path, 0.0, {inf, 0.0}, 1.0, inf, 15.0}},
+          {"progress is no number", {&path, nan, {15.0, 0.0}, 1.0, 1.0, 15.0}}};
 }
 
 /// A path ahead, then a curve to the left.
@@ -183,7 +184,7 @@ inline void expect_plans_are_drivable(const MakePlanner& make, const PlanBudget&
 /// The same sights and budgets give the same plans, bit by bit.
 inline void expect_plans_repeat(const MakePlanner& make, const PlanBudget& budget) {
   const Path path = curved_path();
-  const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 1.0, 1.2};
+  const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 1.0, 1.2, 15.0};
   for (const Vehicle& vehicle : {field_robot(), rover()}) {
     const auto drive = [&] {
       RandomStream random(11, "repeat");

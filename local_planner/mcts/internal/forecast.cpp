@@ -13,6 +13,8 @@ namespace {
 
 constexpr float kFarAway = 1e6F;    // where the padding stands [m]
 constexpr double kLingers = 0.5;    // slower agents may still be there later [m/s]
+constexpr double kStays = 0.5;      // agents who linger so much have to be gone around
+constexpr double kBeside = 0.3;     // beyond the rim, where they are passed [m]
 constexpr double kStanding = 0.05;  // slower, the robot touches nobody: it is touched [m/s]
 
 using Lanes = Eigen::Array4f;
@@ -134,6 +136,27 @@ double Forecast::obstruction(double ax, double ay, double bx, double by) const {
     most = most.max(inside * lanes(lingers_, i));
   }
   return static_cast<double>(most.maxCoeff());
+}
+
+Point2 Forecast::beside(const Point2& from, const Point2& to, double side) const {
+  const Point2 way = to - from;
+  const double length = way.norm();
+  if (!anyone_lingers_ || length < 1e-6) return to;
+  const Point2 along = way / length;
+  const Point2 left(-along.y(), along.x());
+  Point2 aim = to;
+  double nearest = length;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count_); ++i) {
+    if (lingers_[i] < kStays) continue;
+    const Point2 agent(x_[row(levels_) + i], y_[row(levels_) + i]);
+    const double ahead = (agent - from).dot(along);
+    const double aside = (agent - from).dot(left);
+    const double rim = std::sqrt(static_cast<double>(rim_[i]));
+    if (ahead < 0.0 || ahead >= nearest || std::abs(aside) >= rim) continue;
+    nearest = ahead;
+    aim = agent + side * (rim + kBeside) * left;
+  }
+  return aim;
 }
 
 double Forecast::seed_cost(int level, double x, double y) const {

@@ -34,6 +34,10 @@ class Forecast {
 
   /// How far agents who hardly move stand in the way from a to b after the last step, in [0, 1].
   double obstruction(double ax, double ay, double bx, double by) const;
+  bool anyone_lingers() const { return anyone_lingers_; }
+  /// Where to head for from `from` to get to `to`: beside the first agent who hardly moves and is
+  /// in the way, on the left (`side` 1) or right (-1) of it; `to` if there is none.
+  Point2 beside(const Point2& from, const Point2& to, double side) const;
 
   /// The first of (003) Eq. 1's sums, at the end of that step: alpha U over all agents (Eq. 2).
   double seed_cost(int level, double x, double y) const;

@@ -10,6 +10,7 @@ namespace headland::mcts {
 namespace {
 
 constexpr double kDetourLook = 6.0;      // people farther ahead than this will have moved [m]
+constexpr double kWayBack = 2.0;         // a plan that ends beside the path stays so long [s]
 constexpr double kBlockedCost = 1000.0;  // of driving into a static obstacle [s]
 
 Point2 centre_of(const Task& task, const Motion& at) {
@@ -53,8 +54,13 @@ double detour(const Task& task, int first, const Motion& at) {
   const double distance = way.norm();
   if (distance < 1e-6) return 0.0;
   const Point2 to = from + std::min(1.0, kDetourLook / distance) * way;
-  return task.config->detour_s *
-         forecast_of(task, first).obstruction(from.x(), from.y(), to.x(), to.y());
+  return task.detour * forecast_of(task, first).obstruction(from.x(), from.y(), to.x(), to.y());
+}
+
+// What a second beside the path costs: its distance, weighted.
+double beside_path(const Task& task, const Motion& at) {
+  const Point2 off = Point2(at.x, at.y) - task.goal;
+  return task.config->return_per_m * std::abs(task.along.x() * off.y() - task.along.y() * off.x());
 }
 
 // Less the farther ahead, as the agents' own.
@@ -133,19 +139,25 @@ Tree::Judged Tree::judge(const Task& task, int first, int level, const Motion& f
   // Of two plans that end alike, the one that gets on first.
   judged.cost +=
       config.step_s * config.progress_ratio * (Point2(to.x, to.y) - task.goal).norm() / task.wanted;
+  judged.cost += config.step_s * beside_path(task, to);
   judged.arrived =
       task.final && (Point2(to.x, to.y) - task.goal).squaredNorm() <= task.accuracy * task.accuracy;
   return judged;
 }
 
-Action Tree::next_action(const Task& task, const Motion& at, Rollout kind) const {
+Action Tree::next_action(const Task& task, int first, const Motion& at, Rollout kind) const {
   const Manoeuvres& moves = *task.moves;
-  const Point2& goal = task.goal;
+  Point2 goal = task.goal;
   switch (kind) {
     case Rollout::kBrake:
       return moves.braking(at);
     case Rollout::kBack:
       return moves.action(at, moves.backwards(at, goal.x(), goal.y()), task.wanted);
+    case Rollout::kLeft:
+    case Rollout::kRight:
+      goal = forecast_of(task, first)
+                 .beside(centre_of(task, at), goal, kind == Rollout::kLeft ? 1.0 : -1.0);
+      break;
     case Rollout::kGo:
       break;
   }
@@ -158,7 +170,7 @@ Tree::Rolled Tree::roll(const Task& task, int first, int level, Motion at, doubl
                         Rollout kind, Found* record) const {
   bool clear = true;
   for (; level < task.config->depth_count; ++level) {
-    const Action action = next_action(task, at, kind);
+    const Action action = next_action(task, first, at, kind);
     const Motion to = task.moves->drive(at, action);
     const Judged judged = judge(task, first, level, at, to);
     if (record != nullptr) {
@@ -175,7 +187,8 @@ Tree::Rolled Tree::roll(const Task& task, int first, int level, Motion at, doubl
     at = to;
   }
   const double around = detour(task, first, at);
-  return {cost + remaining(task, at) + around, clear && around <= 0.0};
+  return {cost + remaining(task, at) + around + kWayBack * beside_path(task, at),
+          clear && around <= 0.0};
 }
 
 void Tree::close_with_rollout(const Task& task, Node& n) const {
@@ -195,6 +208,10 @@ void Tree::close_with_rollout(const Task& task, Node& n) const {
     n.rollout = other;
   };
   if (!going.clear) offer(Rollout::kBrake);
+  if (!going.clear && forecast_of(task, n.first).anyone_lingers()) {
+    offer(Rollout::kLeft);
+    offer(Rollout::kRight);
+  }
   if (task.moves->reverses() && goal_in_base(task, n.motion).x() < 0.0) offer(Rollout::kBack);
 }
 

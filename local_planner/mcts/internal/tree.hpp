@@ -19,13 +19,15 @@ struct Task {
   /// One; or one per cluster of the root's actions, if the agents react to the robot.
   const std::vector<Forecast>* forecasts = nullptr;
   const ClearanceMap* map = nullptr;
-  double radius = 1.0;    ///< of the robot's disc [m]
-  double centre = 0.0;    ///< of that disc, ahead of the base [m]
-  Point2 goal{0.0, 0.0};  ///< the local goal
-  double accuracy = 0.5;  ///< it is reached within this [m]
-  bool final = false;     ///< it is the next place itself: time stops there
-  double wanted = 1.0;    ///< speed [m/s]
-  double scale = 5.0;     ///< differences of costs count as large from here on
+  double radius = 1.0;     ///< of the robot's disc [m]
+  double centre = 0.0;     ///< of that disc, ahead of the base [m]
+  Point2 goal{0.0, 0.0};   ///< the local goal
+  double accuracy = 0.5;   ///< it is reached within this [m]
+  bool final = false;      ///< it is the next place itself: time stops there
+  double wanted = 1.0;     ///< speed [m/s]
+  double scale = 5.0;      ///< differences of costs count as large from here on
+  double detour = 2.0;     ///< what it costs to go around somebody [s]
+  Point2 along{0.0, 0.0};  ///< the path's direction at the local goal; zero: there is none
 };
 
 /// Actions whose first steps are alike: the turns, and going slower.
@@ -64,7 +66,7 @@ class Tree {
   int size() const { return static_cast<int>(nodes_.size()); }
 
  private:
-  enum class Rollout : std::uint8_t { kGo, kBack, kBrake };
+  enum class Rollout : std::uint8_t { kGo, kLeft, kRight, kBack, kBrake };
 
   struct Node {
     Motion motion;
@@ -107,7 +109,7 @@ class Tree {
               Found* record) const;
   bool judge_node(const Task& task, int n);
   void close_with_rollout(const Task& task, Node& n) const;
-  Action next_action(const Task& task, const Motion& at, Rollout kind) const;
+  Action next_action(const Task& task, int first, const Motion& at, Rollout kind) const;
   bool add_child(const Task& task, int n);
   int select(const Task& task, int n) const;
   void hand_up(const Task& task, int n);

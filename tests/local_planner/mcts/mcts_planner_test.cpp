@@ -25,7 +25,7 @@ class CountingClock : public Clock {
 };
 
 LocalGoal straight_on(double x, double accuracy = 1.0) {
-  return {nullptr, 0.0, {x, 0.0}, 0.0, accuracy, 1.2};
+  return {nullptr, 0.0, {x, 0.0}, accuracy, 1.2};
 }
 
 TEST(MctsPlanner, ObeysTheLawsOfPlanners) {

@@ -47,7 +47,7 @@ VehiclePlan two_rows(double start_soc = 1.0) {
 }
 
 Run drive_plan(const VehiclePlan& plan, const SimulationConfig& config = {}) {
-  return drive_fleet({plan}, {}, Farm{}, Ground(), config).vehicles.front();
+  return drive_fleet({plan}, {}, Farm{}, Ground(), config).value().vehicles.front();
 }
 
 TEST(ClosedLoop, DrivesAllRowsCloseToThePathAtTheEnergyPlanned) {
@@ -106,6 +106,12 @@ TEST(ClosedLoop, ARowDrivenOffItsLineIsNotDone) {
   EXPECT_EQ(run.metrics.rows_done, 0);
 }
 
+RunHooks with_clock(const Clock& clock) {
+  RunHooks hooks;
+  hooks.clock = &clock;
+  return hooks;
+}
+
 // Runs ahead by a second at every look, but for one in so many pairs of looks (begin, deadline).
 class BusyClock : public Clock {
  public:
@@ -129,13 +135,17 @@ TEST(ClosedLoop, HoldsTheTrackersDeadlineAgainstTheClockItIsGiven) {
   EXPECT_EQ(drive_plan(plan, config).metrics.stale_plan_count, 0);
   config.control.rhmc.deadline_s = 0.5;
   const BusyClock always(0);
-  const RunMetrics late =
-      drive_fleet({plan}, {}, Farm{}, Ground(), config, {}, &always).vehicles.front().metrics;
+  const RunMetrics late = drive_fleet({plan}, {}, Farm{}, Ground(), config, with_clock(always))
+                              .value()
+                              .vehicles.front()
+                              .metrics;
   EXPECT_FALSE(late.completed);
   EXPECT_NE(late.reason.find("solver failed"), std::string::npos) << late.reason;
   const BusyClock mostly(3);
-  const RunMetrics some =
-      drive_fleet({plan}, {}, Farm{}, Ground(), config, {}, &mostly).vehicles.front().metrics;
+  const RunMetrics some = drive_fleet({plan}, {}, Farm{}, Ground(), config, with_clock(mostly))
+                              .value()
+                              .vehicles.front()
+                              .metrics;
   EXPECT_TRUE(some.completed) << some.reason;
   EXPECT_GT(some.stale_plan_count, 100);
 }
@@ -179,14 +189,14 @@ TEST(ClosedLoop, VehiclesQueueForTheSlotOfACharger) {
   Farm farm;
   farm.chargers.push_back({"c", {5.0, 0.0, 0.0}, ChargeCurve(1000.0), 1});
   const std::vector<VehiclePlan> plans{by_way_of_charger("a", 0.0), by_way_of_charger("b", 2.0)};
-  const FleetRun one_slot = drive_fleet(plans, {}, farm, Ground(), {});
+  const FleetRun one_slot = drive_fleet(plans, {}, farm, Ground(), {}).value();
   EXPECT_TRUE(one_slot.metrics.completed) << one_slot.metrics.reason;
   EXPECT_EQ(one_slot.metrics.charges, 2);
   EXPECT_EQ(one_slot.vehicles[0].metrics.waited_s, 0.0);
   // 10 % of 100 Wh and what the way took, at 1 kW.
   EXPECT_NEAR(one_slot.vehicles[1].metrics.waited_s, 36.0, 8.0);
   farm.chargers.front().slots = 2;
-  const FleetRun two_slots = drive_fleet(plans, {}, farm, Ground(), {});
+  const FleetRun two_slots = drive_fleet(plans, {}, farm, Ground(), {}).value();
   EXPECT_EQ(two_slots.metrics.waited_s, 0.0);
   EXPECT_LT(two_slots.metrics.duration_s, one_slot.metrics.duration_s);
   const std::vector<FleetTick> ticks = fleet_ticks(one_slot, 0.1);

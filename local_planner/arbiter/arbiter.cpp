@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "local_planner/arbiter/arbiter.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace headland {
+namespace {
+
+constexpr double kStep = 0.2;     // of the look ahead [s]
+constexpr double kBehind = 3.0;   // the path is searched this far back for the vehicle [m]
+constexpr double kAhead = 3.0;    // ... and ahead
+constexpr double kNoDelay = 0.0;  // beyond a stand nobody needs to wait
+
+// Since when something holds at `time` [s]; -1: it does not.
+void hold(bool holds, double time, double& since) {
+  if (!holds) {
+    since = -1.0;
+  } else if (since < 0.0) {
+    since = time;
+  }
+}
+
+}  // namespace
+
+Arbiter::Arbiter(const Vehicle& vehicle, const ArbiterConfig& config)
+    : vehicle_(vehicle), config_(config) {}
+
+double Arbiter::wait(double spare_ratio) const {
+  if (config_.scarce_ratio <= 0.0) return kNoDelay;
+  const double scarce = std::clamp(1.0 - spare_ratio / config_.scarce_ratio, 0.0, 1.0);
+  const double sparse = std::clamp(1.0 - density_ / config_.dense_per_m2, 0.0, 1.0);
+  return config_.wait_s * scarce * sparse;
+}
+
+// Drives along the path at the wanted speed, as if nobody were there, and sees who comes near. From
+// a stand too: that the fail-safe holds the vehicle does not clear the path.
+void Arbiter::look_along(const LocalScene& scene, const LocalGoal& goal) {
+  const Path& path = *goal.path;
+  const double end = goal.place_s > goal.s ? std::min(goal.place_s, path.length()) : path.length();
+  ahead_.begin_s = scene.time_s;
+  ahead_.step_s = kStep;
+  ahead_.states.clear();
+  const int steps = static_cast<int>(std::ceil(config_.horizon_s / kStep));
+  for (int i = 0; i <= steps; ++i) {
+    const double s = std::min(end, goal.s + goal.speed_mps * kStep * i);
+    ahead_.states.push_back({path.at(s).pose, goal.speed_mps, 0.0, 0.0});
+  }
+  gap_ = nearest_approach(vehicle_.footprint, scene, ahead_).gap;
+  const Point2 here = scene.robot.state.pose.position();
+  const auto near = std::count_if(scene.agents.begin(), scene.agents.end(), [&](const Agent& a) {
+    return (a.position - here).norm() < config_.density_radius_m;
+  });
+  density_ =
+      static_cast<double>(near) / (kPi * config_.density_radius_m * config_.density_radius_m);
+}
+
+bool Arbiter::back_on_path(const LocalScene& scene, const LocalGoal& goal) const {
+  const Pose2& pose = scene.robot.state.pose;
+  const Projection on = goal.path->project(pose.position(), goal.s - kBehind, goal.s + kAhead);
+  const double off_heading = wrap_angle(pose.yaw - goal.path->at(on.s).pose.yaw);
+  return on.distance <= config_.rejoin_m && std::abs(off_heading) <= deg_to_rad(config_.rejoin_deg);
+}
+
+Driving Arbiter::decide(const LocalScene& scene, const LocalGoal& goal, const ArbiterView& view) {
+  if (!is_finite(scene, goal) || !(goal.speed_mps > 0.0) ||
+      scene.age_s > LocalPlanner::kOldestScene) {
+    return driving_;
+  }
+  if (goal.path == nullptr || goal.path->empty()) return driving_ = Driving::kLocal;
+  look_along(scene, goal);
+  hold(gap_ < config_.take_m, scene.time_s, in_way_since_);
+  hold(gap_ >= config_.give_m, scene.time_s, free_since_);
+  if (driving_ == Driving::kPath) {
+    const bool in_way =
+        in_way_since_ >= 0.0 && scene.time_s - in_way_since_ >= wait(view.spare_ratio) - 1e-9;
+    if (in_way && view.may_leave) {
+      driving_ = Driving::kLocal;
+      ++takeovers_;
+    }
+  } else {
+    const bool free = free_since_ >= 0.0 && scene.time_s - free_since_ >= config_.hold_s - 1e-9;
+    if (free && back_on_path(scene, goal)) driving_ = Driving::kPath;
+  }
+  return driving_;
+}
+
+}  // namespace headland
