@@ -99,7 +99,7 @@ class Driver {
  public:
   Driver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits, const Farm& farm,
          const Ground& ground, const SimulationConfig& config, ChargerSlots& slots,
-         const ClearanceMap* obstacles, const RunHooks& hooks)
+         const ClearanceMap* obstacles, const PredictorFactory& predictor, const RunHooks& hooks)
       : number_(number),
         given_(plan),
         plan_(plan),
@@ -115,7 +115,7 @@ class Driver {
         estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
         hooks_(hooks) {
     if (obstacles != nullptr) {
-      local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, *obstacles,
+      local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, predictor, *obstacles,
                                             config.seed + static_cast<std::uint64_t>(number),
                                             config.step_s);
     }
@@ -667,13 +667,19 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
   auto around = surroundings(plans, farm, config);
   if (!around) return tl::unexpected<Error>(around.error());
   std::optional<Surroundings>& others = *around;
+  PredictorFactory predictor;
+  if (others) {
+    auto factory = predictor_factory(config.local.planners, hooks.folder);
+    if (!factory) return tl::unexpected<Error>(factory.error());
+    predictor = std::move(*factory);
+  }
   ChargerSlots slots(farm);
   std::vector<Driver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
     drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots,
-                         others ? &others->obstacles : nullptr, hooks);
+                         others ? &others->obstacles : nullptr, predictor, hooks);
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {

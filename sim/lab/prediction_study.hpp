@@ -15,7 +15,7 @@
 namespace headland {
 
 enum class RecordingKind : std::int8_t {
-  kPedestrian,  ///< obsmat.txt of OpenTraj; one recording
+  kPedestrian,  ///< obsmat.txt of OpenTraj, or frame, id, x, y; one recording
   kSheep        ///< sheep_dog_drives.csv of Jadhav et al. 2024; as many as it has drives
 };
 
