@@ -300,6 +300,16 @@ Report run_report(const PlannedMission& planned, const FleetRun& run, double rea
   report.tiles.push_back(
       {"Duration", duration_text(m.duration_s), "",
        fmt::format("simulated {:.0f} times faster than real time", real_time_factor)});
+  if (!run.agents.empty()) {
+    const EncounterMetrics& e = m.encounters;
+    report.tiles.push_back({"Path left", fmt::format("{}", e.takeovers), "times",
+                            fmt::format("for {:.0f} s, around people and animals", e.local_s)});
+    report.tiles.push_back({"Near-collisions", fmt::format("{}", e.near_collisions), "",
+                            fmt::format("{} by the vehicle; {} collisions, {} by the vehicle",
+                                        e.robot_near, e.collisions, e.robot_collisions)});
+    report.tiles.push_back({"Protective stops", fmt::format("{}", e.protective_stops), "",
+                            fmt::format("held back for {:.0f} s", e.held_s)});
+  }
   add_plan_tiles(planned, report);
   for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
     report.vehicles[v].series = driven_series(run.vehicles[v]);

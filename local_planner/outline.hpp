@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/model/kinematics.hpp"
 #include "core/model/vehicle.hpp"
 #include "core/world/clearance_map.hpp"
 
@@ -15,6 +16,22 @@ inline double outline_distance(const Footprint& outline, const Point2& p_base) {
   const double along = std::max({p_base.x() - outline.front_m, -outline.rear_m - p_base.x(), 0.0});
   const double across = std::max(std::abs(p_base.y()) - 0.5 * outline.width_m, 0.0);
   return std::sqrt(along * along + across * across);
+}
+
+/// How fast [m/s] the vehicle's outline moves towards a point of the map where it is nearest to it.
+/// Of a point inside, the vehicle's speed.
+inline double outline_closing(const Vehicle& vehicle, const VehicleState& state, const Point2& p) {
+  const Footprint& outline = vehicle.footprint;
+  const Point2 p_base = inverse(state.pose) * p;
+  const double half = 0.5 * outline.width_m;
+  const Point2 edge(std::clamp(p_base.x(), -outline.rear_m, outline.front_m),
+                    std::clamp(p_base.y(), -half, half));
+  const double rate = vehicle.steering == Steering::kAckermann
+                          ? state.speed * std::tan(state.steering) / vehicle.wheelbase_m
+                          : state.yaw_rate;
+  const Point2 velocity(state.speed - rate * edge.y(), rate * edge.x());
+  const Point2 towards = p_base - edge;
+  return towards.norm() > 1e-9 ? velocity.dot(towards.normalized()) : std::abs(state.speed);
 }
 
 /// Discs along the vehicle's middle line that cover its outline: what is looked up in a

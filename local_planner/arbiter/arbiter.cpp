@@ -10,6 +10,8 @@ namespace {
 constexpr double kStep = 0.2;     // of the look ahead [s]
 constexpr double kBehind = 3.0;   // the path is searched this far back for the vehicle [m]
 constexpr double kAhead = 3.0;    // ... and ahead
+constexpr double kWidens = 4.0;   // a free path is taken up from twice as far after so long [s] ...
+constexpr double kWidest = 5.0;   // ... and at most this many times
 constexpr double kNoDelay = 0.0;  // beyond a stand nobody needs to wait
 
 // Since when something holds at `time` [s]; -1: it does not.
@@ -59,7 +61,11 @@ bool Arbiter::back_on_path(const LocalScene& scene, const LocalGoal& goal) const
   const Pose2& pose = scene.robot.state.pose;
   const Projection on = goal.path->project(pose.position(), goal.s - kBehind, goal.s + kAhead);
   const double off_heading = wrap_angle(pose.yaw - goal.path->at(on.s).pose.yaw);
-  return on.distance <= config_.rejoin_m && std::abs(off_heading) <= deg_to_rad(config_.rejoin_deg);
+  // The longer the path has been free, the farther off it may be taken up.
+  const double free_for = scene.time_s - free_since_ - config_.hold_s;
+  const double wider = std::min(1.0 + free_for / kWidens, kWidest);
+  return on.distance <= wider * config_.rejoin_m &&
+         std::abs(off_heading) <= deg_to_rad(wider * config_.rejoin_deg);
 }
 
 Driving Arbiter::decide(const LocalScene& scene, const LocalGoal& goal, const ArbiterView& view) {

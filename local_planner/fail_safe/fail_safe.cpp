@@ -187,8 +187,10 @@ FailSafe::Verdict FailSafe::check(const LocalScene& scene, const Turn& turn, dou
 // The fastest certified speed found by bisection, at most `cap`.
 FailSafe::Allowed FailSafe::allowed(const LocalScene& scene, const Turn& turn, double direction,
                                     double cap) {
-  Verdict why = check(scene, turn, direction, cap);
-  if (why.safe || cap <= 0.0) return {cap, why};
+  if (cap <= 0.0) return {cap, {}};
+  // Not even by creeping, slower than a sweep would notice, does it come where it must not.
+  Verdict why = check(scene, turn, direction, std::max(cap, kCrawl));
+  if (why.safe) return {cap, why};
   double low = 0.0;
   double high = cap;
   for (int i = 0; i < kBisections; ++i) {

@@ -2,608 +2,18 @@
 #include "sim/lab/closed_loop.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <memory>
 #include <optional>
-#include <span>
+#include <utility>
 
-#include <fmt/format.h>
+#include "local_planner/outline.hpp"
+#include "sim/lab/run/plan_driver.hpp"
+#include "sim/lab/run/run_metrics.hpp"
 
 namespace headland {
 namespace {
 
 constexpr double kProgressPeriod = 1.0;  // simulated [s]
-
-// Window of the path in which the true position is projected, around the tracker's progress [m].
-constexpr double kWindow = 3.0;
-// Nearer to a cusp than this, the vehicle is on it [m].
-constexpr double kOnCusp = 1e-6;
-// Slower counts as standing [m/s]: a drive with a lag never quite stands.
-constexpr double kStill = 1e-3;
-// To where the local planner drives: the end of a stretch of one gear [m].
-constexpr double kPlaceAccuracy = 0.3;
-// Nearer than this to the end of such a stretch the path is not left [m].
-constexpr double kNoLeavingBefore = 5.0;
-constexpr double kAgentPeriod = 0.5;    // of FleetRun::agents [s]
-constexpr double kReplanPeriod = 60.0;  // [s]
-
-// Who charges where, and who waits: first come, first served.
-class ChargerSlots {
- public:
-  explicit ChargerSlots(const Farm& farm) : farm_(farm), queues_(farm.chargers.size()) {}
-
-  int find(const std::string& id) const {
-    for (std::size_t c = 0; c < farm_.chargers.size(); ++c) {
-      if (farm_.chargers[c].id == id) return static_cast<int>(c);
-    }
-    return -1;
-  }
-  const Charger& charger(int c) const { return farm_.chargers[static_cast<std::size_t>(c)]; }
-  void enqueue(int c, int vehicle) { queue(c).push_back(vehicle); }
-  // The first in the queue hold the slots.
-  bool holds_slot(int c, int vehicle) const {
-    const auto& all = queues_[static_cast<std::size_t>(c)];
-    const auto at = std::find(all.begin(), all.end(), vehicle);
-    return at - all.begin() < charger(c).slots;
-  }
-  void leave(int c, int vehicle) {
-    queue(c).erase(std::find(queue(c).begin(), queue(c).end(), vehicle));
-  }
-
- private:
-  std::vector<int>& queue(int c) { return queues_[static_cast<std::size_t>(c)]; }
-  const Farm& farm_;
-  std::vector<std::vector<int>> queues_;  // of vehicles, at each charger
-};
-
-// Rows, and those of which all parts are done, by whichever vehicle. What was planned and is no leg
-// of what was driven is not done.
-void count_rows(std::span<const VehiclePlan> plans, std::span<const Run> runs,
-                RunMetrics& metrics) {
-  std::map<std::string, bool> done;
-  for (std::size_t v = 0; v < plans.size(); ++v) {
-    const std::vector<PlanLeg>& driven = runs[v].driven.legs;
-    for (std::size_t i = 0; i < driven.size(); ++i) {
-      if (driven[i].kind != LegKind::kRow) continue;
-      const auto row = done.emplace(driven[i].id, true).first;
-      row->second = row->second && runs[v].leg_done[i];
-    }
-    for (const PlanLeg& leg : plans[v].legs) {
-      if (leg.kind == LegKind::kRow) done.emplace(leg.id, false);
-    }
-  }
-  metrics.rows_total = static_cast<int>(done.size());
-  metrics.rows_done = static_cast<int>(
-      std::count_if(done.begin(), done.end(), [](const auto& row) { return row.second; }));
-}
-
-const char* describe(TrackStatus failure) {
-  switch (failure) {
-    case TrackStatus::kPathLost:
-      return "the tracker lost the path";
-    case TrackStatus::kBadState:
-      return "the measured state is no number";
-    case TrackStatus::kSolverFailed:
-      return "the tracker's solver failed";
-    case TrackStatus::kTracking:
-    case TrackStatus::kGearChange:
-    case TrackStatus::kDone:
-      break;
-  }
-  return "the tracker stopped";
-}
-
-// One vehicle on its plan, tick by tick.
-class Driver {
- public:
-  Driver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits, const Farm& farm,
-         const Ground& ground, const SimulationConfig& config, ChargerSlots& slots,
-         const ClearanceMap* obstacles, const PredictorFactory& predictor, const RunHooks& hooks)
-      : number_(number),
-        given_(plan),
-        plan_(plan),
-        visits_(visits),
-        farm_(farm),
-        ground_(ground),
-        config_(config),
-        slots_(slots),
-        vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
-                 config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
-        tracker_(
-            make_tracker(plan.vehicle, config.control, config.sensors, config.step_s, hooks.clock)),
-        estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
-        hooks_(hooks) {
-    if (obstacles != nullptr) {
-      local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, predictor, *obstacles,
-                                            config.seed + static_cast<std::uint64_t>(number),
-                                            config.step_s);
-    }
-    fit_to_legs();
-    if (estimator_ != nullptr) estimator_->reset(vehicle_.truth(), 0.0);
-    begin_stage(0.0);
-  }
-
-  bool done() const { return state_ == State::kDone; }
-  // Of the driven length [m].
-  double driven() const { return done() ? total_length_ : stage_start_s_ + progress_s_; }
-  double total_length() const { return total_length_; }
-
-  const VehicleState& truth() const { return vehicle_.truth(); }
-  const Vehicle& vehicle() const { return plan_.vehicle; }
-
-  // The tick that ends at `time` [s]; `agents` at its begin.
-  void step(double time, std::span<const Agent> agents) {
-    agents_ = agents;
-    if (state_ != State::kDone) observe(time - config_.step_s);
-    switch (state_) {
-      case State::kDriving:
-        drive(time);
-        break;
-      case State::kQueueing:
-        if (slots_.holds_slot(charger_, number_)) begin_charge(time);
-        break;
-      case State::kStanding:
-        if (time >= until_) end_stop(time);
-        break;
-      case State::kDone:
-        break;
-    }
-  }
-
-  // What came of the tick; `agents` at its end.
-  void count(std::span<const Agent> agents) {
-    if (local_ != nullptr && state_ != State::kDone) local_->count(vehicle_.truth(), agents);
-  }
-
-  void stop(double time) {
-    if (!done()) give_up("it was stopped", time);
-  }
-
-  Run finish() {
-    run_.driven = std::move(plan_);
-    summarise();
-    return std::move(run_);
-  }
-
- private:
-  enum class State { kDriving, kQueueing, kStanding, kDone };
-
-  const PlanStage& stage() const { return plan_.stages[stage_]; }
-  const PlanLeg& stop() const { return plan_.legs[static_cast<std::size_t>(stage().stop_leg)]; }
-
-  // Sizes what is kept leg by leg.
-  void fit_to_legs() {
-    run_.leg_done.resize(plan_.legs.size(), false);
-    worst_.resize(plan_.legs.size(), 0.0);
-    leg_speed_.clear();
-    leg_working_.clear();
-    for (const PlanLeg& leg : plan_.legs) {
-      leg_speed_.push_back(leg_speed(plan_.vehicle, leg.kind));
-      leg_working_.push_back(leg.kind == LegKind::kRow);
-    }
-    total_length_ = 0.0;
-    for (const PlanStage& stage : plan_.stages) total_length_ += stage.path.length();
-  }
-
-  void begin_stage(double time) {
-    if (stage_ >= plan_.stages.size()) {
-      state_ = State::kDone;
-      run_.metrics.duration_s = time;
-      return;
-    }
-    if (stage().path.empty()) {
-      reference_ = {};
-      return arrive(time);
-    }
-    // Nothing drives a stage at less than a tenth of its planned pace.
-    give_up_at_ = time + 60.0 + 10.0 * planned_duration(stage());
-    follow(stage().path, time);
-  }
-
-  // Starts the tracker on a path: a stage's, or what is left of it.
-  void follow(const Path& path, double time) {
-    progress_s_ = 0.0;
-    reached_s_ = 0.0;
-    reference_ = Reference{path, leg_speed_, {}, leg_working_};  // the tracker points to it
-    reference_.zones = energy_zones(reference_, plan_.vehicle, config_.control.limits, ground_);
-    if (const auto started = tracker_->start(reference_); !started) {
-      return give_up(started.error().what, time);
-    }
-    state_ = State::kDriving;
-  }
-
-  // What the vehicle knows of itself at `time` [s], at a stand too.
-  void observe(double time) {
-    if (estimator_ == nullptr) {
-      if (state_ == State::kDriving) known_ = vehicle_.measure();
-      return;
-    }
-    known_ = estimator_->update(vehicle_.sense(time), told_, time).vehicle;
-  }
-
-  void drive(double time) {
-    LocalOutput local;
-    if (local_ != nullptr) {
-      local = local_->step(time - config_.step_s, known_, local_goal(), local_view(time), agents_);
-      if (local.gave_back && !take_up_path(time)) return;
-    }
-    const Point2 before = vehicle_.truth().pose.position();
-    if (local.driving == Driving::kLocal) {
-      told_ = local.command;
-      reached_s_ = nearest_s();
-    } else {
-      const TrackOutput output = tracker_->step(known_, config_.step_s);
-      told_ = local_ != nullptr ? local_->guard(output.command) : output.command;
-      reached_s_ = output.s;
-      if (output.stale) ++run_.metrics.stale_plan_count;
-      if (output.status == TrackStatus::kDone && std::abs(vehicle_.truth().speed) < kStill) {
-        return arrive(time);
-      }
-      if (failed(output.status)) return give_up(describe(output.status), time);
-    }
-    const int leg = reference_.path.at(reached_s_).leg;
-    vehicle_.step(told_, plan_.legs[static_cast<std::size_t>(leg)].kind);
-    record(before, local.driving, time);
-    if (local.driving == Driving::kPath &&
-        std::abs(run_.trace.back().cross_track_m) > config_.max_deviation_m) {
-      return give_up("the vehicle left its path", time);
-    }
-    if (vehicle_.soc() <= 0.0) return give_up("the battery is empty", time);
-    if (time > give_up_at_) return give_up("the vehicle does not get on", time);
-    const int now = run_.trace.back().leg;
-    if (local_ != nullptr && local.driving == Driving::kPath && now != checked_leg_) {
-      checked_leg_ = now;
-      check_reserve(time);
-    }
-  }
-
-  // What the local planner drives to: along the path, as far as its next cusp.
-  LocalGoal local_goal() const {
-    const Path& path = reference_.path;
-    const PathSample at = path.at(reached_s_);
-    const PathSegment& segment = path.segments()[static_cast<std::size_t>(at.segment)];
-    LocalGoal goal;
-    goal.path = &path;
-    goal.s = reached_s_;
-    goal.place = path.at(segment.end_s - kOnCusp).pose.position();
-    goal.place_s = segment.end_s;
-    goal.accuracy_m = kPlaceAccuracy;
-    goal.speed_mps = leg_speed_[static_cast<std::size_t>(at.leg)];
-    return goal;
-  }
-
-  ArbiterView local_view(double time) {
-    const PathSample at = reference_.path.at(reached_s_);
-    const PathSegment& segment = reference_.path.segments()[static_cast<std::size_t>(at.segment)];
-    ArbiterView view;
-    view.may_leave = plan_.legs[static_cast<std::size_t>(at.leg)].kind != LegKind::kRow &&
-                     at.gear == Gear::kForward && segment.end_s - reached_s_ > kNoLeavingBefore;
-    if (time >= spare_until_) {
-      spare_ratio_ = spare() / plan_.vehicle.battery.capacity_j();
-      spare_until_ = time + 1.0;
-    }
-    view.spare_ratio = spare_ratio_;
-    return view;
-  }
-
-  // Progress of a vehicle that is not on the path: never back, never across a cusp.
-  double nearest_s() const {
-    const Path& path = reference_.path;
-    const PathSegment& segment =
-        path.segments()[static_cast<std::size_t>(path.at(reached_s_).segment)];
-    const double ahead = std::min(reached_s_ + kWindow, segment.end_s - kOnCusp);
-    return path.project(known_.state.pose.position(), reached_s_, std::max(reached_s_, ahead)).s;
-  }
-
-  // Gives the tracker the rest of the path. False if nothing is left of it, or the tracker cannot.
-  bool take_up_path(double time) {
-    const double s = nearest_s();
-    stage_start_s_ += s;
-    const Path rest = reference_.path.slice(s, reference_.path.length());
-    if (rest.empty()) {
-      reference_ = {};
-      arrive(time);
-      return false;
-    }
-    follow(rest, time);
-    checked_leg_ = -1;
-    return state_ == State::kDriving;
-  }
-
-  double spare() const {
-    const int leg = reference_.path.at(reached_s_).leg;
-    const auto [begin, end] = reference_.path.leg_range(leg);
-    const double done = end > begin ? (reached_s_ - begin) / (end - begin) : 0.0;
-    return spare_energy(plan_, {leg, done}, vehicle_.soc());
-  }
-
-  // Plans what is left anew if the charge will not last; not within rows.
-  void check_reserve(double time) {
-    const int leg = reference_.path.at(reached_s_).leg;
-    if (!hooks_.replan || time < replan_from_ || spare() >= 0.0 ||
-        plan_.legs[static_cast<std::size_t>(leg)].kind == LegKind::kRow) {
-      return;
-    }
-    replan_from_ = time + kReplanPeriod;
-    const Standing standing{known_.state.pose, vehicle_.soc(), time, leg + 1};
-    auto anew = hooks_.replan(static_cast<std::size_t>(number_), plan_, standing);
-    if (!anew) {
-      ++run_.metrics.failed_replans;
-      return;
-    }
-    ++run_.metrics.replans;
-    go_on_by(std::move(*anew), leg + 1, time);
-  }
-
-  // From here on another plan is driven; its legs follow on those so far.
-  void go_on_by(VehiclePlan anew, int first_leg, double time) {
-    stage_start_s_ += reached_s_;
-    plan_.stages.resize(stage_ + 1);
-    double before = 0.0;
-    for (std::size_t i = 0; i < stage_; ++i) before += plan_.stages[i].path.length();
-    plan_.stages.back().path = plan_.stages.back().path.slice(0.0, stage_start_s_ - before);
-    plan_.stages.back().stop_leg = -1;
-    for (const PlanStage& stage : anew.stages) {
-      PlanStage& added = plan_.stages.emplace_back();
-      added.path.append(stage.path, first_leg);
-      added.stop_leg = stage.stop_leg < 0 ? -1 : stage.stop_leg + first_leg;
-    }
-    plan_.legs.resize(static_cast<std::size_t>(first_leg));
-    for (PlanLeg& leg : anew.legs) {
-      leg.begin_s += time;
-      leg.earliest_s += leg.earliest_s > 0.0 ? time : 0.0;
-      plan_.legs.push_back(std::move(leg));
-    }
-    plan_.energy_j = 0.0;
-    for (const PlanLeg& leg : plan_.legs) plan_.energy_j += leg.cost.energy_j;
-    plan_.finish_s = time + anew.finish_s;
-    fit_to_legs();
-    ++stage_;
-    begin_stage(time);
-  }
-
-  // At the stage's end: stand in the queue of a charger, at a visit, or go on.
-  void arrive(double time) {
-    stage_start_s_ += reference_.path.length();
-    progress_s_ = 0.0;
-    if (stage().stop_leg < 0) {
-      ++stage_;
-      return begin_stage(time);
-    }
-    arrived_ = time;
-    if (stop().kind == LegKind::kCharge) {
-      charger_ = slots_.find(stop().id);
-      slots_.enqueue(charger_, number_);
-      state_ = State::kQueueing;
-      if (slots_.holds_slot(charger_, number_)) begin_charge(time);
-      return;
-    }
-    const double begin = std::max(time, stop().earliest_s);
-    run_.metrics.waited_s += begin - time;
-    until_ = begin + stop().cost.duration_s;
-    vehicle_.draw(stop().cost.energy_j);
-    state_ = State::kStanding;
-  }
-
-  void begin_charge(double time) {
-    run_.metrics.waited_s += time - arrived_;
-    ++run_.metrics.charges;
-    until_ = time + vehicle_.charge(
-                        lower(slots_.charger(charger_).curve, plan_.vehicle.battery.acceptance()),
-                        stop().soc_end);
-    state_ = State::kStanding;
-  }
-
-  void end_stop(double time) {
-    if (stop().kind == LegKind::kCharge) slots_.leave(charger_, number_);
-    run_.leg_done[static_cast<std::size_t>(stage().stop_leg)] =
-        stop().visit < 0 || visited(visits_[static_cast<std::size_t>(stop().visit)]);
-    ++stage_;
-    begin_stage(time);
-  }
-
-  // Whether the vehicle stands near enough to the poi, and not too late.
-  bool visited(const Visit& visit) const {
-    const Poi& poi = farm_.pois[static_cast<std::size_t>(visit.poi)];
-    const Point2 off = vehicle_.truth().pose.position() - poi.pose.position();
-    return off.norm() <= visit.accuracy_m && arrived_ <= visit.terms.latest_s;
-  }
-
-  double planned_duration(const PlanStage& driven) const {
-    double duration = 0.0;
-    for (const PathPiece& piece : driven.path.pieces()) {
-      duration += piece.length / leg_speed_[static_cast<std::size_t>(piece.leg)];
-    }
-    return duration + 10.0 * static_cast<double>(driven.path.segments().size());
-  }
-
-  // Projects the true position onto the path around the vehicle's progress, never across a cusp
-  // (the path runs back on itself there), and appends a trace row.
-  void record(const Point2& before, Driving driving, double time) {
-    const Path& path = reference_.path;
-    const VehicleState& truth = vehicle_.truth();
-    // On a cusp the tracker is still on the segment that ends there.
-    const double s = std::max(0.0, reached_s_ - kOnCusp);
-    const PathSegment& segment = path.segments()[static_cast<std::size_t>(path.at(s).segment)];
-    const Projection projection =
-        path.project(truth.pose.position(), std::max(segment.begin_s, reached_s_ - kWindow),
-                     std::min(segment.end_s, reached_s_ + kWindow));
-    const PathSample at = path.at(std::min(projection.s, segment.end_s - 1e-9));
-    progress_s_ = projection.s;
-    run_.trace.push_back({time, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed,
-                          truth.steering, told_.yaw_rate, stage_start_s_ + projection.s,
-                          projection.lateral_error, vehicle_.soc(), at.gear, at.leg,
-                          vehicle_.slip(), known_.slip,
-                          (known_.state.pose.position() - before).norm(), driving});
-    const auto leg = static_cast<std::size_t>(at.leg);
-    worst_[leg] = std::max(worst_[leg], std::abs(projection.lateral_error));
-    run_.leg_done[leg] = true;
-    if (driving == Driving::kPath && truth.speed * sign(at.gear) < -1e-3) {
-      ++run_.metrics.wrong_gear_count;
-    }
-    run_.metrics.min_soc = std::min(run_.metrics.min_soc, vehicle_.soc());
-  }
-
-  void give_up(const std::string& why, double time) {
-    const bool moved = !run_.trace.empty();
-    const int leg = moved ? run_.trace.back().leg : 0;
-    run_.metrics.reason = fmt::format("{}: {} after {:.1f} m, on leg '{}'", plan_.id, why,
-                                      moved ? run_.trace.back().s_m : 0.0,
-                                      plan_.legs[static_cast<std::size_t>(leg)].id);
-    run_.metrics.duration_s = time;
-    state_ = State::kDone;
-  }
-
-  void summarise() {
-    RunMetrics& metrics = run_.metrics;
-    if (local_ != nullptr) metrics.encounters = local_->metrics();
-    for (std::size_t i = 0; i < run_.driven.legs.size(); ++i) count_leg(i);
-    for (const PlanLeg& leg : given_.legs) count_dropped(leg);
-    count_rows({&given_, 1}, {&run_, 1}, metrics);
-    const double reserve = given_.vehicle.battery.reserve_soc;
-    metrics.reserve_kept = metrics.min_soc >= reserve - 1e-9;
-    if (metrics.reason.empty() && !metrics.reserve_kept) {
-      metrics.reason = fmt::format("{}: the charge fell to {:.1f} %, below the reserve of {:.1f} %",
-                                   given_.id, 100.0 * metrics.min_soc, 100.0 * reserve);
-    }
-    if (metrics.reason.empty() && metrics.duration_s > given_.shift_s) {
-      metrics.reason = fmt::format("{}: it was back {:.0f} s after its shift of {:.0f} s",
-                                   given_.id, metrics.duration_s - given_.shift_s, given_.shift_s);
-    }
-    const int missed_rows = metrics.rows_total - metrics.rows_done;
-    const int missed_visits = metrics.visits_total - metrics.visits_done;
-    metrics.completed = metrics.reason.empty() && missed_rows == 0 && missed_visits == 0;
-    const int replans = metrics.replans;
-    if (metrics.reason.empty() && replans > 0 && missed_rows + missed_visits > 0) {
-      metrics.reason = fmt::format(
-          "{}: {} rows and {} places were left out when the rest was planned anew, as the charge "
-          "would not have lasted",
-          given_.id, missed_rows, missed_visits);
-    }
-    if (metrics.reason.empty() && missed_rows > 0) {
-      metrics.reason = fmt::format("{}: {} rows were driven with an error above {} m", given_.id,
-                                   missed_rows, config_.row_tolerance_m);
-    } else if (metrics.reason.empty() && missed_visits > 0) {
-      metrics.reason =
-          fmt::format("{}: {} places were not reached closely enough", given_.id, missed_visits);
-    }
-    metrics.energy_j = vehicle_.drawn_j();
-  }
-
-  void count_leg(std::size_t i) {
-    RunMetrics& metrics = run_.metrics;
-    const PlanLeg& leg = run_.driven.legs[i];
-    if (leg.visit >= 0) {
-      ++metrics.visits_total;
-      metrics.visits_done += run_.leg_done[i] ? 1 : 0;
-    }
-    if (leg.kind != LegKind::kRow) return;
-    // The last row begun when a run breaks off was not driven to its end.
-    const bool broken_off = !metrics.reason.empty() && !run_.trace.empty() &&
-                            run_.trace.back().leg == static_cast<int>(i);
-    run_.leg_done[i] = run_.leg_done[i] && !broken_off && worst_[i] <= config_.row_tolerance_m;
-  }
-
-  // A visit that a new plan no longer holds.
-  void count_dropped(const PlanLeg& planned) {
-    if (planned.visit < 0) return;
-    const auto& legs = run_.driven.legs;
-    const bool kept = std::any_of(legs.begin(), legs.end(),
-                                  [&](const PlanLeg& leg) { return leg.visit == planned.visit; });
-    if (!kept) ++run_.metrics.visits_total;
-  }
-
-  int number_;
-  const VehiclePlan& given_;
-  VehiclePlan plan_;  // as it is driven
-  const std::vector<Visit>& visits_;
-  const Farm& farm_;
-  const Ground& ground_;
-  const SimulationConfig& config_;
-  ChargerSlots& slots_;
-  SimulatedVehicle vehicle_;
-  std::unique_ptr<Tracker> tracker_;
-  std::unique_ptr<Estimator> estimator_;
-  std::unique_ptr<LocalLayer> local_;  // null: nobody is about
-  const RunHooks& hooks_;
-  std::span<const Agent> agents_;
-  VehicleEstimate known_;
-  Command told_;  // at the last tick
-  std::vector<double> leg_speed_;
-  std::vector<bool> leg_working_;
-  Reference reference_;
-  std::vector<double> worst_;  // largest cross-track error of each leg
-  Run run_;
-  State state_ = State::kDriving;
-  std::size_t stage_ = 0;
-  int charger_ = -1;
-  double arrived_ = 0.0;     // at the stop
-  double until_ = 0.0;       // it stands
-  double give_up_at_ = 0.0;  // if the stage is not done by then
-  double progress_s_ = 0.0;  // of the true position on the path that is followed [m]
-  double reached_s_ = 0.0;   // ... and as far as the vehicle knows
-  int checked_leg_ = -1;     // for its energy
-  double replan_from_ = 0.0;
-  double spare_ratio_ = 1.0;  // of the battery, above the reserve
-  double spare_until_ = 0.0;  // that is known well enough
-  double stage_start_s_ = 0.0;
-  double total_length_ = 0.0;
-};
-
-// Tracking errors of several vehicles as one sequence; legs numbered on. Only where the path is
-// followed.
-TrackingMetrics fleet_tracking(std::span<const Run> runs) {
-  std::vector<PathError> errors;
-  std::vector<LegKind> kinds;
-  for (std::size_t v = 0; v < runs.size(); ++v) {
-    const int offset = static_cast<int>(kinds.size());
-    for (const TraceRow& row : runs[v].trace) {
-      if (row.driving == Driving::kLocal) continue;  // off the path on purpose
-      errors.push_back({row.s_m, row.cross_track_m, std::abs(row.cross_track_m), offset + row.leg});
-    }
-    for (const PlanLeg& leg : runs[v].driven.legs) kinds.push_back(leg.kind);
-  }
-  return tracking_metrics(errors, kinds);
-}
-
-void add(const EncounterMetrics& one, EncounterMetrics& all) {
-  all.takeovers += one.takeovers;
-  all.local_s += one.local_s;
-  all.held_s += one.held_s;
-  all.protective_stops += one.protective_stops;
-  all.near_collisions += one.near_collisions;
-  all.robot_near += one.robot_near;
-  all.collisions += one.collisions;
-  all.robot_collisions += one.robot_collisions;
-  all.least_gap_m = std::min(all.least_gap_m, one.least_gap_m);
-}
-
-RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vector<Run>& runs) {
-  RunMetrics all;
-  all.completed = true;
-  for (const Run& run : runs) {
-    const RunMetrics& one = run.metrics;
-    all.completed = all.completed && one.completed;
-    if (all.reason.empty()) all.reason = one.reason;
-    all.visits_done += one.visits_done;
-    all.visits_total += one.visits_total;
-    all.charges += one.charges;
-    all.energy_j += one.energy_j;
-    all.duration_s = std::max(all.duration_s, one.duration_s);
-    all.waited_s += one.waited_s;
-    all.min_soc = std::min(all.min_soc, one.min_soc);
-    all.reserve_kept = all.reserve_kept && one.reserve_kept;
-    all.wrong_gear_count += one.wrong_gear_count;
-    all.stale_plan_count += one.stale_plan_count;
-    all.replans += one.replans;
-    all.failed_replans += one.failed_replans;
-    add(one.encounters, all.encounters);
-  }
-  count_rows(plans, runs, all);
-  all.tracking = fleet_tracking(runs);
-  return all;
-}
+constexpr double kAgentPeriod = 0.5;     // of FleetRun::agents [s]
 
 }  // namespace
 
@@ -652,7 +62,7 @@ Result<std::optional<Surroundings>> surroundings(const std::vector<VehiclePlan>&
   return Surroundings{std::move(*crowd), obstacles_of(farm)};
 }
 
-CrowdRobot body_of(const Driver& driver, double share) {
+CrowdRobot body_of(const PlanDriver& driver, double share) {
   const OutlineDisc disc(driver.vehicle().footprint);
   const VehicleState& truth = driver.truth();
   return {disc.centre(truth.pose), truth.speed * truth.pose.heading(), disc.radius, share};
@@ -674,7 +84,7 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
     predictor = std::move(*factory);
   }
   ChargerSlots slots(farm);
-  std::vector<Driver> drivers;
+  std::vector<PlanDriver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
@@ -683,7 +93,8 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {
-    return std::all_of(drivers.begin(), drivers.end(), [](const Driver& d) { return d.done(); });
+    return std::all_of(drivers.begin(), drivers.end(),
+                       [](const PlanDriver& d) { return d.done(); });
   };
   FleetRun run;
   double next_progress = 0.0;
@@ -692,30 +103,30 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
     const double time = static_cast<double>(tick) * config.step_s;
     std::vector<CrowdRobot> bodies;
     if (others) {
-      for (const Driver& driver : drivers) {
+      for (const PlanDriver& driver : drivers) {
         bodies.push_back(body_of(driver, config.agents.robot_share_ratio));
       }
     }
     const auto agents = [&] { return others ? others->crowd.agents() : std::span<const Agent>{}; };
-    for (Driver& driver : drivers) driver.step(time, agents());
+    for (PlanDriver& driver : drivers) driver.step(time, agents());
     if (others) {
       others->crowd.step(config.step_s, bodies);
-      for (Driver& driver : drivers) driver.count(agents());
+      for (PlanDriver& driver : drivers) driver.count(agents());
       if (time >= next_frame) {
         next_frame += kAgentPeriod;
         run.agents.push_back({time, {agents().begin(), agents().end()}});
       }
     }
     if (hooks.stop && hooks.stop()) {
-      for (Driver& driver : drivers) driver.stop(time);
+      for (PlanDriver& driver : drivers) driver.stop(time);
     }
     if (!hooks.progress || time < next_progress) continue;
     next_progress += kProgressPeriod;
     double driven = 0.0;
-    for (const Driver& driver : drivers) driven += driver.driven();
+    for (const PlanDriver& driver : drivers) driven += driver.driven();
     hooks.progress(driven / std::max(total, 1.0), time);
   }
-  for (Driver& driver : drivers) run.vehicles.push_back(driver.finish());
+  for (PlanDriver& driver : drivers) run.vehicles.push_back(driver.finish());
   for (Run& one : run.vehicles) one.metrics.tracking = fleet_tracking({&one, 1});
   run.metrics = fleet_metrics(plans, run.vehicles);
   return run;

@@ -93,6 +93,9 @@ StepRisk Forecast::step(int level, double ax, double ay, double bx, double by, d
   const auto fay = static_cast<float>(ay);
   const auto fbx = static_cast<float>(bx);
   const auto fby = static_cast<float>(by);
+  // Who stands does not give way later either: waiting must not make passing him look cheaper.
+  const float weight = weight_[static_cast<std::size_t>(level)];
+  const float certain = weight_.front() - weight;
   Lanes sum = Lanes::Zero();
   Lanes most = Lanes::Zero();
   const std::size_t before = row(level);
@@ -108,12 +111,11 @@ StepRisk Forecast::step(int level, double ax, double ay, double bx, double by, d
     const Lanes ny = dy + t * ey;
     const Lanes inside =
         ((lanes(rim_, i) - nx * nx - ny * ny) * lanes(scale_, i)).max(0.0F).min(2.0F);
-    sum += inside * inside;
+    sum += inside * inside * (weight + certain * lanes(lingers_, i));
     most = most.max(inside);
   }
-  const float cost = (sum(0) + sum(1)) + (sum(2) + sum(3));
   StepRisk risk;
-  risk.cost = static_cast<double>(cost * weight_[static_cast<std::size_t>(level)]);
+  risk.cost = static_cast<double>((sum(0) + sum(1)) + (sum(2) + sum(3)));
   risk.contact = most.maxCoeff() > 1.0F && std::abs(speed) > kStanding;
   return risk;
 }

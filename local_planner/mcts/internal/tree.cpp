@@ -22,15 +22,15 @@ const Forecast& forecast_of(const Task& task, int first) {
   return all[all.size() == 1 ? 0 : static_cast<std::size_t>(cluster_of(first))];
 }
 
-Point2 goal_in_base(const Task& task, const Motion& at) {
-  const double dx = task.goal.x() - at.x;
-  const double dy = task.goal.y() - at.y;
+Point2 in_base(const Motion& at, const Point2& place) {
+  const double dx = place.x() - at.x;
+  const double dy = place.y() - at.y;
   return {at.c * dx + at.s * dy, -at.s * dx + at.c * dy};
 }
 
-// What a plan that ends at `at` still needs: seconds, or the first term of (003) Eq. 1.
-double remaining(const Task& task, const Motion& at) {
-  const Point2 goal = goal_in_base(task, at);
+// What a plan that ends at `at` still needs to a place: seconds, or the first term of (003) Eq. 1.
+double remaining(const Task& task, const Motion& at, const Point2& to) {
+  const Point2 goal = in_base(at, to);
   if (task.config->cost == MctsCost::kSeed) return goal.squaredNorm();
   const Manoeuvres& moves = *task.moves;
   const auto seconds = [&](const Point2& place, double speed, double pace) {
@@ -47,14 +47,24 @@ double remaining(const Task& task, const Motion& at) {
   return std::min(forwards, seconds({-goal.x(), goal.y()}, -at.speed, task.config->reverse_ratio));
 }
 
-// Who still stands in the way at the end has to be gone around.
+// Who still stands in the way at the end has to be gone around: by the way past him on one side
+// that the vehicle can drive, which is long from right before him.
 double detour(const Task& task, int first, const Motion& at) {
+  const Forecast& forecast = forecast_of(task, first);
+  if (!forecast.anyone_lingers()) return 0.0;
   const Point2 from = centre_of(task, at);
   const Point2 way = task.goal - from;
   const double distance = way.norm();
   if (distance < 1e-6) return 0.0;
   const Point2 to = from + std::min(1.0, kDetourLook / distance) * way;
-  return task.detour * forecast_of(task, first).obstruction(from.x(), from.y(), to.x(), to.y());
+  const double obstruction = forecast.obstruction(from.x(), from.y(), to.x(), to.y());
+  if (obstruction <= 0.0) return 0.0;
+  const auto around = [&](double side) {
+    const Point2 beside = forecast.beside(from, task.goal, side);
+    return remaining(task, at, beside) + (task.goal - beside).norm() / task.wanted;
+  };
+  const double longer = std::min(around(1.0), around(-1.0)) - remaining(task, at, task.goal);
+  return obstruction * (task.detour + std::max(0.0, longer));
 }
 
 // What a second beside the path costs: its distance, weighted.
@@ -182,19 +192,19 @@ Tree::Rolled Tree::roll(const Task& task, int first, int level, Motion at, doubl
     if (judged.arrived) return {cost, clear};
     if (judged.blocked) return {cost + kBlockedCost, false};
     if (judged.contact) {
-      return {cost + contact_cost(task, level) + remaining(task, to), false};
+      return {cost + contact_cost(task, level) + remaining(task, to, task.goal), false};
     }
     at = to;
   }
   const double around = detour(task, first, at);
-  return {cost + remaining(task, at) + around + kWayBack * beside_path(task, at),
+  return {cost + remaining(task, at, task.goal) + around + kWayBack * beside_path(task, at),
           clear && around <= 0.0};
 }
 
 void Tree::close_with_rollout(const Task& task, Node& n) const {
   if (task.config->cost == MctsCost::kSeed) {
     const Point2 centre = centre_of(task, n.motion);
-    n.own = remaining(task, n.motion) +
+    n.own = remaining(task, n.motion, task.goal) +
             forecast_of(task, n.first).seed_cost(n.level, centre.x(), centre.y());
     return;
   }
@@ -212,7 +222,7 @@ void Tree::close_with_rollout(const Task& task, Node& n) const {
     offer(Rollout::kLeft);
     offer(Rollout::kRight);
   }
-  if (task.moves->reverses() && goal_in_base(task, n.motion).x() < 0.0) offer(Rollout::kBack);
+  if (task.moves->reverses() && in_base(n.motion, task.goal).x() < 0.0) offer(Rollout::kBack);
 }
 
 // Finds the cost of a node anew from its parent's state. False if it is no step at all.
@@ -229,7 +239,7 @@ bool Tree::judge_node(const Task& task, int number) {
   if (judged.blocked) {
     n.own = n.cost + kBlockedCost;
   } else if (judged.contact) {
-    n.own = n.cost + contact_cost(task, parent.level) + remaining(task, n.motion);
+    n.own = n.cost + contact_cost(task, parent.level) + remaining(task, n.motion, task.goal);
   } else if (judged.arrived) {
     n.own = task.config->cost == MctsCost::kSeed ? 0.0 : n.cost;
   } else {

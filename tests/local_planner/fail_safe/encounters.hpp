@@ -209,15 +209,7 @@ inline double closing(const Vehicle& vehicle, const VehicleState& robot, const A
   const Point2 p = inverse(robot.pose) * agent.position;
   if (outline_distance(outline, p) > agent.radius_m) return 0.0;
   touched = true;
-  const double half = 0.5 * outline.width_m;
-  const Point2 edge(std::clamp(p.x(), -outline.rear_m, outline.front_m),
-                    std::clamp(p.y(), -half, half));
-  const double rate = vehicle.steering == Steering::kAckermann
-                          ? robot.speed * std::tan(robot.steering) / vehicle.wheelbase_m
-                          : robot.yaw_rate;
-  const Point2 velocity(robot.speed - rate * edge.y(), rate * edge.x());
-  const Point2 towards = p - edge;
-  return towards.norm() > 1e-9 ? velocity.dot(towards.normalized()) : std::abs(robot.speed);
+  return outline_closing(vehicle, robot, agent.position);
 }
 
 /// Fifteen seconds of a vehicle that drives as random commands say (turning, forwards or backwards,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/lab/local_layer.hpp"
+#include "sim/lab/run/local_layer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,35 +98,30 @@ Command LocalLayer::guard(const Command& wanted) {
 
 void LocalLayer::count(const VehicleState& truth, std::span<const Agent> agents) {
   const Pose2 T_base_map = inverse(truth.pose);
-  const OutlineDisc disc(vehicle_.footprint);
-  const Point2 centre = disc.centre(truth.pose);
-  const Point2 velocity = truth.speed * truth.pose.heading();
   for (const Agent& agent : agents) {
-    const Point2 off = agent.position - centre;
-    const double distance = off.norm();
-    const double far = disc.radius + agent.radius_m + kApart;
-    if (distance > far) {
+    const Point2 p_base = T_base_map * agent.position;
+    const double gap = outline_distance(vehicle_.footprint, p_base) - agent.radius_m;
+    if (gap > kApart) {
       meetings_.erase(agent.id);
       continue;
     }
-    const double gap =
-        outline_distance(vehicle_.footprint, T_base_map * agent.position) - agent.radius_m;
     metrics_.least_gap_m = std::min(metrics_.least_gap_m, gap);
     Meeting& meeting = meetings_[agent.id];
-    const Point2 towards = distance > 1e-9 ? Point2(off / distance) : Point2(1.0, 0.0);
-    const double by_vehicle = velocity.dot(towards);
-    const double by_agent = -agent.velocity.dot(towards);
-    if (gap < config_.near_m && !meeting.near) {
+    const bool near = gap < config_.near_m && !meeting.near;
+    const bool contact = gap < 0.0 && !meeting.contact;
+    if (!near && !contact) continue;
+    const double by_vehicle = outline_closing(vehicle_, truth, agent.position);
+    const Point2 towards = (agent.position - truth.pose.position()).normalized();
+    const bool fault = by_vehicle > kStill;
+    if (near) {
       meeting.near = true;
       ++metrics_.near_collisions;
-      if (by_vehicle > kStill && by_vehicle >= by_agent) ++metrics_.robot_near;
+      if (fault && by_vehicle >= -agent.velocity.dot(towards)) ++metrics_.robot_near;
     }
-    if (gap >= 0.0) continue;
-    if (!meeting.contact) ++metrics_.collisions;
-    meeting.contact = true;
-    if (by_vehicle > kStill && !meeting.robot_contact) {
-      meeting.robot_contact = true;
-      ++metrics_.robot_collisions;
+    if (contact) {
+      meeting.contact = true;
+      ++metrics_.collisions;
+      if (fault) ++metrics_.robot_collisions;
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sim/lab/field_agents.hpp"
+#include "sim/lab/run/field_agents.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -37,13 +37,22 @@ struct SightConfig {
 
 /// The local layer of a vehicle in a simulated mission.
 struct LocalLayerConfig {
+  /// Defaults of a mission: nobody is counted on to give way, and agents' velocities are seen.
+  LocalLayerConfig() {
+    planners.predictor = PredictorKind::kConstantVelocity;
+    planners.mcts.clearance_m = 1.0;
+    fail_safe.agents = AgentMotion::kObserved;
+    arbiter.take_m = 1.5;
+    arbiter.give_m = 2.0;
+  }
+
   LocalPlannerKind planner = LocalPlannerKind::kMcts;
   LocalPlannersConfig planners;
   ArbiterConfig arbiter;
   FailSafeConfig fail_safe;
   SightConfig sight;
   double plan_period_s = 0.4;
-  int iterations_count = 500;
+  int iterations_count = 1000;
   double near_m = 0.5;
 
   template <class V>
@@ -61,6 +70,8 @@ struct LocalLayerConfig {
   }
 };
 
+constexpr double kNobodyNear = 1e3;  ///< EncounterMetrics::least_gap_m
+
 /// What a vehicle and the agents did to each other.
 struct EncounterMetrics {
   int takeovers = 0;         ///< times that the local planner took over
@@ -70,8 +81,8 @@ struct EncounterMetrics {
   int near_collisions = 0;   ///< meetings with an agent nearer than near_m, ...
   int robot_near = 0;        ///< ... in which the vehicle closed in the faster
   int collisions = 0;        ///< meetings in which outline and disc overlapped, ...
-  int robot_collisions = 0;  ///< ... while the vehicle moved towards the agent by over 0.05 m/s
-  double least_gap_m = 1e3;  ///< outline to disc; 1e3: nobody came near
+  int robot_collisions = 0;  ///< ... when the outline moved towards the agent by over 0.05 m/s
+  double least_gap_m = kNobodyNear;  ///< outline to disc
 };
 
 /// What the local layer makes of a tick.
@@ -105,7 +116,6 @@ class LocalLayer {
   struct Meeting {
     bool near = false;
     bool contact = false;
-    bool robot_contact = false;
   };
 
   void look(double time, const VehicleEstimate& known, std::span<const Agent> agents);
