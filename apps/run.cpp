@@ -2,6 +2,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <thread>
 
 #include <fmt/format.h>
@@ -26,7 +27,8 @@ double seconds_since(Clock::time_point begin) {
 }
 
 // Ctrl-C ends the run; what was driven is reported.
-Result<FleetRun> drive(const PlannedMission& planned, double realtime) {
+Result<FleetRun> drive(const PlannedMission& planned, const std::filesystem::path& folder,
+                       double realtime) {
   ProgressBar bar("driving");
   const InterruptGuard guard;
   const auto begin = Clock::now();
@@ -41,6 +43,7 @@ Result<FleetRun> drive(const PlannedMission& planned, double realtime) {
   const SteadyClock clock;  // for deadlines, if any are set
   hooks.clock = &clock;
   hooks.stop = InterruptGuard::interrupted;
+  hooks.folder = folder;
   hooks.replan = [&](std::size_t vehicle, const VehiclePlan& plan, const Standing& standing) {
     return replan(mission, vehicle, plan, standing);
   };
@@ -64,7 +67,7 @@ int run_command(const CommonOptions& options, double realtime) {
   if (!options.json) fmt::print("{}\n", plan_text(planned->plan, planned->planning_s));
   std::fflush(stdout);
   const auto begin = Clock::now();
-  const auto driven = drive(*planned, realtime);
+  const auto driven = drive(*planned, std::filesystem::path(options.file).parent_path(), realtime);
   if (!driven) return report_error(driven.error(), options);
   const FleetRun& run = *driven;
   for (std::size_t v = 0; v < run.vehicles.size(); ++v) {

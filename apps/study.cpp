@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -13,10 +14,15 @@
 #include "sim/lab/ebs221_study.hpp"
 #include "sim/lab/energy_study.hpp"
 #include "sim/lab/polito_study.hpp"
+#include "sim/lab/prediction_study.hpp"
 #include "sim/lab/tracking_study.hpp"
 
 namespace headland::apps {
 namespace {
+
+std::filesystem::path folder_of(const config::Node& node) {
+  return std::filesystem::path(node.where().file).parent_path();
+}
 
 template <class Config, class RunStudy>
 Result<FinishedStudy> run_as(const config::Node& node, int max_episodes,
@@ -40,7 +46,7 @@ Result<FinishedStudy> run_episodes_as(const config::Node& node, int max_episodes
   ProgressBar bar("episodes");
   const InterruptGuard guard;
   const StudyRun run{jobs, out, [&bar](double share) { bar.update(share); },
-                     InterruptGuard::interrupted};
+                     InterruptGuard::interrupted, folder_of(node)};
   return run_as<Config>(node, max_episodes,
                         [&](const Config& config) { return run_study(config, run); });
 }
@@ -60,6 +66,12 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
       return run_energy_study(config, jobs);
     });
   }
+  if (name == "prediction") {
+    return run_as<PredictionStudyConfig>(
+        node, max_episodes, [&](const PredictionStudyConfig& config) {
+          return run_prediction_study(config, folder_of(node), jobs);
+        });
+  }
   if (name == "tracking") {
     return run_as<TrackingStudyConfig>(node, max_episodes, [&](const TrackingStudyConfig& config) {
       return run_tracking_study(config, jobs);
@@ -75,7 +87,7 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: acfr, crowd, ebs221, energy, polito, tracking", where);
+              "allowed: acfr, crowd, ebs221, energy, polito, prediction, tracking", where);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "local_planner/prediction/prediction_steps.hpp"
+
 namespace headland {
 namespace {
 

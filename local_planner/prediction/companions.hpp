@@ -36,7 +36,7 @@ double way_after(const CompanionModel& model, AgentKind kind, double t);
 
 struct CompanionConfig {
   AgentFilterConfig filter;
-  VelocityWalk spread{0.1, 0.55, 0.4, 1.0, 0.3};
+  VelocityWalk spread{0.07, 0.65, 0.4, 1.0, 0.3};
   CompanionModel companions;
 
   template <class V>

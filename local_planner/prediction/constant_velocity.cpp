@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "local_planner/prediction/constant_velocity.hpp"
 
+#include "local_planner/prediction/prediction_steps.hpp"
+
 namespace headland {
 
 ConstantVelocityPredictor::ConstantVelocityPredictor(const ConstantVelocityConfig& config)
@@ -18,26 +20,6 @@ void ConstantVelocityPredictor::predict(std::span<const Point2>, double step_s, 
   for (const FilteredAgent& agent : filter_.seen()) {
     for (int k = 1; k <= prediction.steps; ++k) *mean++ = agent.position_after(k * step_s);
   }
-}
-
-bool can_predict(double step_s, int steps) { return step_s > 0.0 && step_s <= 10.0 && steps > 0; }
-
-void begin_prediction(std::span<const FilteredAgent> agents, const VelocityWalk& spread,
-                      double step_s, int steps, Prediction& prediction) {
-  prediction.step_s = step_s;
-  prediction.steps = can_predict(step_s, steps) ? steps : 0;
-  prediction.ids.clear();
-  prediction.radius_m.clear();
-  prediction.covariance.clear();
-  for (const FilteredAgent& agent : agents) {
-    prediction.ids.push_back(agent.id);
-    prediction.radius_m.push_back(agent.radius_m);
-    const double walk = spread.of(agent.kind);
-    for (int k = 1; k <= prediction.steps; ++k) {
-      prediction.covariance.push_back(agent.spread_after(k * step_s, walk));
-    }
-  }
-  prediction.mean.resize(prediction.covariance.size());
 }
 
 }  // namespace headland

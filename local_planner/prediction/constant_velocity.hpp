@@ -34,13 +34,4 @@ class ConstantVelocityPredictor : public Predictor {
   AgentFilter filter_;
 };
 
-/// Whether steps of `step_s` [s] can be predicted: more than none, and none longer than 10 s.
-bool can_predict(double step_s, int steps);
-
-/// Makes room for all agents, writes who they are, and their covariances by what the filter does
-/// not know and by `spread`. If that cannot be predicted, there are no steps. The means are left
-/// to the caller.
-void begin_prediction(std::span<const FilteredAgent> agents, const VelocityWalk& spread,
-                      double step_s, int steps, Prediction& prediction);
-
 }  // namespace headland

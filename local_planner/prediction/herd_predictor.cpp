@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "local_planner/prediction/prediction_steps.hpp"
+
 namespace headland {
 namespace {
 
@@ -114,16 +116,11 @@ void HerdPredictor::predict(std::span<const Point2> robot_path, double step_s, i
   herd_.clear();
   for (const std::size_t i : animals_) herd_.push_back({seen[i].position, seen[i].velocity});
   threats_ = threats_now_;
-  const int parts = static_cast<int>(std::ceil(step_s / kLongestStep));
+  const int parts = parts_of(step_s, kLongestStep);
   const double dt = step_s / parts;
   for (int k = 0; k < prediction.steps; ++k) {
-    Threat& robot = threats_.front();
-    const std::size_t on_path =
-        std::min<std::size_t>(static_cast<std::size_t>(k), robot_path.size());
-    robot.body.velocity.setZero();
-    if (on_path < robot_path.size() && robot_path[on_path].allFinite()) {
-      robot.body.velocity = (robot_path[on_path] - robot.body.position) / step_s;
-    }
+    Body& robot = threats_.front().body;
+    robot.velocity = velocity_along(robot_path, k, robot.position, step_s);
     for (int part = 0; part < parts; ++part) step(k * step_s + part * dt, dt);
     for (std::size_t i = 0; i < animals_.size(); ++i) {
       prediction.mean[prediction.index(static_cast<int>(animals_[i]), k)] = herd_[i].position;

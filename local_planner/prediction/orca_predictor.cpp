@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "local_planner/prediction/prediction_steps.hpp"
+
 namespace headland {
 namespace {
 
@@ -63,15 +65,11 @@ void OrcaPredictor::predict(std::span<const Point2> robot_path, double step_s, i
   for (std::size_t i = 0; i < seen.size(); ++i) {
     bodies_.push_back({seen[i].position, velocities_[i]});
   }
-  const int parts = static_cast<int>(std::ceil(step_s / kLongestStep));
+  const int parts = parts_of(step_s, kLongestStep);
   const double dt = step_s / parts;
   Body robot{robot_, {0.0, 0.0}};
   for (int k = 0; k < prediction.steps; ++k) {
-    const auto next = static_cast<std::size_t>(k);
-    robot.velocity.setZero();
-    if (next < robot_path.size() && robot_path[next].allFinite()) {
-      robot.velocity = (robot_path[next] - robot.position) / step_s;
-    }
+    robot.velocity = velocity_along(robot_path, k, robot.position, step_s);
     for (int part = 0; part < parts; ++part) {
       const double t = k * step_s + part * dt;
       next_.clear();

@@ -152,11 +152,13 @@ void TrackSet::at(double time_s, std::vector<Agent>& agents) const {
 Result<TrackSet> read_obsmat(const std::string& file) {
   TrackSet set{file, 0.0, {}};
   const auto take = [&set](const Fields& fields) -> std::optional<std::string> {
-    if (fields.size() != 8) return fmt::format("{} columns, not 8", fields.size());
+    if (fields.size() != 8 && fields.size() != 4) {
+      return fmt::format("{} columns, not 8 or 4", fields.size());
+    }
     const auto frame = number(fields[0]);
     const auto id = integer(fields[1]);
     const auto x = number(fields[2]);
-    const auto y = number(fields[4]);
+    const auto y = number(fields.size() == 8 ? fields[4] : fields[3]);
     if (!frame || !id || !x || !y) return "a frame, id, x or y that is no number";
     Track& track = track_of(set, *id);
     track.time_s.push_back(*frame);

@@ -35,7 +35,8 @@ struct TrackSet {
 };
 
 /// Pedestrians, as the obsmat.txt of OpenTraj's ETH and UCY scenes: per line frame, id, x, z, y and
-/// three components of velocity, which are not used. Samples are 0.4 s apart; how many frames that
+/// three components of velocity, which are not used; or the four columns frame, id, x, y that
+/// benchmarks of prediction use (Social GAN's). Samples are 0.4 s apart; how many frames that
 /// is differs (6 in eth, 10 in hotel and zara01), so it is taken to be the smallest distance of two
 /// frames of a track. Errors: kFileNotFound; kSyntax with the line.
 Result<TrackSet> read_obsmat(const std::string& file);

@@ -107,7 +107,8 @@ class Tours {
   std::vector<AcfrTour> all_;
 };
 
-Episode drive(const AcfrStudyConfig& config, const Cell& cell, const AcfrTour& tour, int run) {
+Episode drive(const AcfrStudyConfig& config, const PredictorFactory& predictor, const Cell& cell,
+              const AcfrTour& tour, int run) {
   const ThreadClock clock;
   AcfrDrive episode;
   episode.tour = &tour;
@@ -118,7 +119,7 @@ Episode drive(const AcfrStudyConfig& config, const Cell& cell, const AcfrTour& t
   episode.budget.iterations = config.iterations_count;
   episode.seed = seed_of(config, run);
   episode.clock = &clock;
-  const auto planner = make_local_planner(cell.planner, config.local, config.vehicle);
+  const auto planner = make_local_planner(cell.planner, config.local, config.vehicle, predictor);
   AcfrOutcome outcome = drive_acfr(episode, *planner);
 
   Episode result;
@@ -248,10 +249,13 @@ Result<StudyResult> run_acfr_study(const AcfrStudyConfig& config, const StudyRun
   EpisodeGrid grid{
       config.study, config::to_yaml(one), row_columns<LogRow>(), {}, config.runs_count};
   for (const Cell& cell : cells) grid.cells.push_back(cell.name());
+  const auto predictor = predictor_factory(config.local, run.folder);
+  if (!predictor) return tl::unexpected<Error>(predictor.error());
   const auto tours = Tours::plan(config, run.jobs);
   if (!tours) return tl::unexpected<Error>(tours.error());
   const auto episodes = run_episodes(grid, run, [&](int cell, int number) {
-    return drive(config, cells[static_cast<std::size_t>(cell)], tours->of(number), number);
+    return drive(config, *predictor, cells[static_cast<std::size_t>(cell)], tours->of(number),
+                 number);
   });
   if (!episodes) return tl::unexpected<Error>(episodes.error());
   StudyResult result = result_of(config, cells, *episodes);

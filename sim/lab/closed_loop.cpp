@@ -77,13 +77,19 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
   auto around = surroundings(plans, farm, config);
   if (!around) return tl::unexpected<Error>(around.error());
   std::optional<Surroundings>& others = *around;
+  PredictorFactory predictor;
+  if (others) {
+    auto factory = predictor_factory(config.local.planners, hooks.folder);
+    if (!factory) return tl::unexpected<Error>(factory.error());
+    predictor = std::move(*factory);
+  }
   ChargerSlots slots(farm);
   std::vector<PlanDriver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
     drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots,
-                         others ? &others->obstacles : nullptr, hooks);
+                         others ? &others->obstacles : nullptr, predictor, hooks);
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -137,6 +138,7 @@ struct RunHooks {
   const Clock* clock = nullptr;  ///< trackers' deadlines are held against it
   Replan replan;                 ///< none: plans are kept, whatever the charge
   std::function<bool()> stop;    ///< true gives all vehicles up
+  std::filesystem::path folder;  ///< where relative files of the configuration begin
 };
 
 /// Drives the plans of all vehicles in lock-step simulation, each with the tracker that suits its
@@ -145,7 +147,7 @@ struct RunHooks {
 /// around them and stops for them; the energy left is checked again afterwards, and what is left of
 /// the mission planned anew if the reserve is at risk. Deterministic: same plan, configuration and
 /// seed, same trace to the bit; unless there is a clock.
-/// @return Errors of make_crowd.
+/// @return Errors of make_crowd and predictor_factory.
 Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
                              const std::vector<Visit>& visits, const Farm& farm,
                              const Ground& ground, const SimulationConfig& config,

@@ -39,17 +39,19 @@ std::vector<Cell> cells_of(const CrowdStudyConfig& config) {
   return cells;
 }
 
-std::unique_ptr<EpisodeRobot> robot_of(const CrowdStudyConfig& config, const Cell& cell,
+std::unique_ptr<EpisodeRobot> robot_of(const CrowdStudyConfig& config,
+                                       const PredictorFactory& predictor, const Cell& cell,
                                        const CrowdWalk& walk) {
   if (!cell.planner) return std::make_unique<HolonomicOrcaRobot>(walk.start, walk.goal);
   return std::make_unique<PlannedRobot>(
-      config.vehicle, make_local_planner(*cell.planner, config.local, config.vehicle),
+      config.vehicle, make_local_planner(*cell.planner, config.local, config.vehicle, predictor),
       PlanBudget{config.iterations_count, {}}, walk.start, walk.goal);
 }
 
-Episode drive(const CrowdStudyConfig& config, const Cell& cell, int run) {
+Episode drive(const CrowdStudyConfig& config, const PredictorFactory& predictor, const Cell& cell,
+              int run) {
   const CrowdScenario scenario = crowd_scenario(static_cast<std::uint64_t>(config.seed), run);
-  const auto robot = robot_of(config, cell, scenario.robot);
+  const auto robot = robot_of(config, predictor, cell, scenario.robot);
   Episode episode;
   const CrowdOutcome outcome =
       run_crowd_episode(scenario, cell.visible, *robot, ThreadClock(), episode.plan_ms);
@@ -157,8 +159,10 @@ Result<StudyResult> run_crowd_study(const CrowdStudyConfig& config, const StudyR
   EpisodeGrid grid{
       config.study, config::to_yaml(one), row_columns<CrowdOutcome>(), {}, config.runs_count};
   for (const Cell& cell : cells) grid.cells.push_back(cell.name());
+  const auto predictor = predictor_factory(config.local, run.folder);
+  if (!predictor) return tl::unexpected<Error>(predictor.error());
   const auto episodes = run_episodes(grid, run, [&](int cell, int number) {
-    return drive(config, cells[static_cast<std::size_t>(cell)], number);
+    return drive(config, *predictor, cells[static_cast<std::size_t>(cell)], number);
   });
   if (!episodes) return tl::unexpected<Error>(episodes.error());
   StudyResult result = result_of(config, cells, *episodes);

@@ -10,38 +10,38 @@
 #include "local_planner/fail_safe/fail_safe_planner.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
-#include "local_planner/prediction/constant_velocity.hpp"
-#include "local_planner/prediction/herd_predictor.hpp"
-#include "local_planner/prediction/orca_predictor.hpp"
+#include "local_planner/prediction/predictors.hpp"
 
 namespace headland {
 
 enum class LocalPlannerKind { kMcts, kFailSafe };
-enum class PredictorKind { kConstantVelocity, kOrca, kHerd };
 
 /// Settings of all local planners.
 struct LocalPlannersConfig {
   MctsConfig mcts;
   PredictorKind predictor = PredictorKind::kOrca;
-  ConstantVelocityConfig constant_velocity;
-  OrcaConfig orca;
-  HerdConfig herd;
+  PredictorsConfig predictors;
   FailSafePlannerConfig fs;
 
   template <class V>
   void visit(V& v) {
     v("mcts", mcts, "Monte Carlo tree search");
     v("predictor", predictor, "How the tree search expects agents to move");
-    v("constant_velocity", constant_velocity, "Agents that go straight on");
-    v("orca", orca, "Agents that give way to each other and to the robot");
-    v("herd", herd, "Sheep and cattle");
+    predictors.visit(v);
     v("fs", fs, "Following the path and waiting");
   }
 };
 
+/// The factory of the predictor that `config` names; see predictor_factory.
+inline Result<PredictorFactory> predictor_factory(const LocalPlannersConfig& config,
+                                                  const std::filesystem::path& folder) {
+  return predictor_factory(config.predictor, config.predictors, folder);
+}
+
 std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
                                                  const LocalPlannersConfig& config,
-                                                 const Vehicle& vehicle);
+                                                 const Vehicle& vehicle,
+                                                 const PredictorFactory& predictor);
 
 }  // namespace headland
 
@@ -49,12 +49,4 @@ template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
       {headland::LocalPlannerKind::kMcts, "mcts"}, {headland::LocalPlannerKind::kFailSafe, "fs"}};
-};
-
-template <>
-struct headland::config::EnumNames<headland::PredictorKind> {
-  static constexpr std::pair<headland::PredictorKind, std::string_view> values[] = {
-      {headland::PredictorKind::kConstantVelocity, "constant_velocity"},
-      {headland::PredictorKind::kOrca, "orca"},
-      {headland::PredictorKind::kHerd, "herd"}};
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "core/base/error.hpp"
 
@@ -95,6 +96,27 @@ double mcnemar(int only_first, int only_second) {
         std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + log_half);
   }
   return std::min(1.0, 2.0 * tail);
+}
+
+Statistic summarize(std::vector<double> sample, const std::vector<int>& clusters) {
+  HEADLAND_CHECK(sample.size() == clusters.size(), "a cluster per value");
+  const double n = static_cast<double>(sample.size());
+  std::map<int, double> deviations;  // of all values of a cluster from the mean, added up
+  double mean = 0.0;
+  for (const double x : sample) mean += x / n;
+  for (std::size_t i = 0; i < sample.size(); ++i) deviations[clusters[i]] += sample[i] - mean;
+  Statistic result = summarize(std::move(sample));
+  result.ci_low.reset();
+  result.ci_high.reset();
+  if (deviations.size() < 2) return result;
+  // The variance of a mean of clusters (Liang and Zeger 1986).
+  double squares = 0.0;
+  for (const auto& [cluster, deviation] : deviations) squares += deviation * deviation;
+  const int freedom = static_cast<int>(deviations.size()) - 1;
+  const double half = student_t_95(freedom) * std::sqrt(squares * (freedom + 1.0) / freedom) / n;
+  result.ci_low = result.mean - half;
+  result.ci_high = result.mean + half;
+  return result;
 }
 
 }  // namespace headland

@@ -31,4 +31,8 @@ Statistic proportion(int hits, int count);
 /// are equally good. In (0, 1]; both >= 0.
 double mcnemar(int only_first, int only_second);
 
+/// Likewise for a sample whose values hang together within clusters (their numbers, one per value):
+/// the interval takes each cluster as one. With one cluster there is no interval.
+Statistic summarize(std::vector<double> sample, const std::vector<int>& clusters);
+
 }  // namespace headland

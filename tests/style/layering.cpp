@@ -77,6 +77,7 @@ const std::vector<Library>& libraries() {
       {"openssl/", {"fleet"}},
       {"spdlog/", {"core", "apps"}},
       {"CLI/", {"apps"}},
+      {"torch/", {"sim/lab/training"}},
   };
   return kLibraries;
 }

@@ -17,12 +17,13 @@ constexpr double kSameTick = 1e-6;  // [s]
 }  // namespace
 
 LocalLayer::LocalLayer(const Vehicle& vehicle, const LocalLayerConfig& config,
-                       const ClearanceMap& map, std::uint64_t seed, double cycle)
+                       const PredictorFactory& predictor, const ClearanceMap& map,
+                       std::uint64_t seed, double cycle)
     : vehicle_(vehicle),
       config_(config),
       map_(map),
       cycle_(cycle),
-      planner_(make_local_planner(config.planner, config.planners, vehicle)),
+      planner_(make_local_planner(config.planner, config.planners, vehicle, predictor)),
       arbiter_(vehicle, config.arbiter),
       fail_safe_(vehicle,
                  [&] {

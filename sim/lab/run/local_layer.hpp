@@ -97,9 +97,10 @@ struct LocalOutput {
 /// Deterministic for a seed.
 class LocalLayer {
  public:
-  /// `map` must outlive it. `cycle` [s]: between two ticks.
-  LocalLayer(const Vehicle& vehicle, const LocalLayerConfig& config, const ClearanceMap& map,
-             std::uint64_t seed, double cycle);
+  /// `map` must outlive it. `predictor`: see predictor_factory. `cycle` [s]: between two ticks.
+  LocalLayer(const Vehicle& vehicle, const LocalLayerConfig& config,
+             const PredictorFactory& predictor, const ClearanceMap& map, std::uint64_t seed,
+             double cycle);
 
   /// Looks at the agents there are, and says who drives now.
   LocalOutput step(double time, const VehicleEstimate& known, const LocalGoal& goal,

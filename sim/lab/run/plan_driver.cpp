@@ -55,7 +55,8 @@ bool works(const VehiclePlan& plan) {
 
 PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits,
                        const Farm& farm, const Ground& ground, const SimulationConfig& config,
-                       ChargerSlots& slots, const ClearanceMap* obstacles, const RunHooks& hooks)
+                       ChargerSlots& slots, const ClearanceMap* obstacles,
+                       const PredictorFactory& predictor, const RunHooks& hooks)
     : number_(number),
       given_(plan),
       plan_(plan),
@@ -71,7 +72,7 @@ PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Vi
       estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
       hooks_(hooks) {
   if (obstacles != nullptr) {
-    local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, *obstacles,
+    local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, predictor, *obstacles,
                                           config.seed + static_cast<std::uint64_t>(number),
                                           config.step_s);
   }

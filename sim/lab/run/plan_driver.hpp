@@ -15,10 +15,11 @@ namespace headland {
 /// where there are agents. All that it is given must outlive it.
 class PlanDriver {
  public:
-  /// `obstacles`: for the local layer; null: nobody is about.
+  /// `obstacles`, `predictor`: for the local layer; null: nobody is about.
   PlanDriver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits,
              const Farm& farm, const Ground& ground, const SimulationConfig& config,
-             ChargerSlots& slots, const ClearanceMap* obstacles, const RunHooks& hooks);
+             ChargerSlots& slots, const ClearanceMap* obstacles, const PredictorFactory& predictor,
+             const RunHooks& hooks);
 
   bool done() const { return state_ == State::kDone; }
   /// Of the driven length [m].

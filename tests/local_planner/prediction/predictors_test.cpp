@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "local_planner/prediction/predictors.hpp"
+
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -8,21 +10,23 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "local_planner/prediction/constant_velocity.hpp"
-#include "local_planner/prediction/herd_predictor.hpp"
-#include "local_planner/prediction/orca_predictor.hpp"
 
 namespace headland {
 namespace {
 
-using Make = std::function<std::unique_ptr<Predictor>()>;
-
-class AnyPredictor : public ::testing::TestWithParam<Make> {};
-INSTANTIATE_TEST_SUITE_P(
-    All, AnyPredictor,
-    ::testing::Values([] { return std::make_unique<ConstantVelocityPredictor>(); },
-                      [] { return std::make_unique<OrcaPredictor>(); },
-                      [] { return std::make_unique<HerdPredictor>(); }));
+class AnyPredictor : public ::testing::TestWithParam<PredictorKind> {
+ protected:
+  static std::unique_ptr<Predictor> make() {
+    const auto factory = predictor_factory(GetParam(), {}, HEADLAND_SOURCE_DIR "/config/studies");
+    EXPECT_TRUE(factory) << to_string(factory.error());
+    return (*factory)();
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, AnyPredictor,
+                         ::testing::Values(PredictorKind::kConstantVelocity,
+                                           PredictorKind::kCompanions, PredictorKind::kOrca,
+                                           PredictorKind::kHerd, PredictorKind::kLearned),
+                         [](const auto& one) { return std::string(config::enum_name(one.param)); });
 
 std::vector<Agent> walkers(int count, double time) {
   RandomStream random(3, "walkers");
@@ -45,7 +49,7 @@ void watch(Predictor& predictor, int count) {
 }
 
 TEST_P(AnyPredictor, GivesAGaussianForEachAgentAndStepThatWidens) {
-  const auto predictor = GetParam()();
+  const auto predictor = make();
   for (const int count : {0, 1, 17, 500}) {
     watch(*predictor, count);
     Prediction p;
@@ -66,7 +70,7 @@ TEST_P(AnyPredictor, GivesAGaussianForEachAgentAndStepThatWidens) {
 }
 
 TEST_P(AnyPredictor, LeavesOutWhatIsNoNumber) {
-  const auto predictor = GetParam()();
+  const auto predictor = make();
   std::vector<Agent> agents = walkers(3, 0.0);
   agents[1].position.x() = std::numeric_limits<double>::quiet_NaN();
   predictor->observe(agents, {0.0, 0.0}, {0.0, 0.0}, 0.0);
@@ -76,7 +80,7 @@ TEST_P(AnyPredictor, LeavesOutWhatIsNoNumber) {
 }
 
 TEST_P(AnyPredictor, IsNearWhatItSawAndGoesOnAsBefore) {
-  const auto predictor = GetParam()();
+  const auto predictor = make();
   const auto agent = [](double time) {
     std::vector<Agent> one(1);
     one[0].position = {3.0 + 0.8 * time, 4.0};
@@ -92,7 +96,7 @@ TEST_P(AnyPredictor, IsNearWhatItSawAndGoesOnAsBefore) {
 }
 
 TEST_P(AnyPredictor, ForgetsWhoIsNotSeen) {
-  const auto predictor = GetParam()();
+  const auto predictor = make();
   watch(*predictor, 3);
   predictor->observe({}, {0.0, 0.0}, {0.0, 0.0}, 9.0);
   Prediction p;

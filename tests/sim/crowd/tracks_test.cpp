@@ -51,6 +51,15 @@ TEST(TracksFile, FramesBecomeSecondsThatBeginAtTheFirstSample) {
   EXPECT_DOUBLE_EQ(set->step_s, 0.4);
 }
 
+TEST(TracksFile, FourColumnsAreFrameIdAndPlace) {
+  const auto set = read_obsmat(write("0.0\t7.0\t1.5\t-2\n10.0\t7.0\t2.5\t-3\n"));
+  ASSERT_TRUE(set) << to_string(set.error());
+  ASSERT_EQ(set->tracks.size(), 1u);
+  EXPECT_EQ(set->tracks[0].id, 7);
+  EXPECT_EQ(set->tracks[0].position[1], Point2(2.5, -3.0));
+  EXPECT_NEAR(set->end_s(), 0.4, 1e-12);
+}
+
 TEST(TracksFile, BetweenSamplesAnAgentMovesStraightAndAtASampleItHasThePastVelocity) {
   const auto set = read_obsmat(write(kObsmat));
   ASSERT_TRUE(set);

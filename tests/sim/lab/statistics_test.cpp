@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/statistics.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
@@ -98,6 +100,26 @@ TEST(McNemar, KnowsBinomialTailsByHand) {
   EXPECT_NEAR(mcnemar(0, 5), 2.0 / 32.0, 1e-12);
   EXPECT_EQ(mcnemar(5, 5), 1.0);
   EXPECT_NEAR(mcnemar(500, 600), 0.0028, 2e-4);  // normal: z = (100 - 1) / sqrt(1100)
+}
+
+TEST(Summarize, TakesEachClusterAsOne) {
+  // Values that are the same within a cluster tell as much as one of them.
+  const std::vector<double> one = {1.0, 4.0, 2.5, 3.0};
+  std::vector<double> many;
+  std::vector<int> clusters;
+  for (int i = 0; i < 4; ++i) {
+    for (int k = 0; k < 10; ++k) {
+      many.push_back(one[static_cast<std::size_t>(i)]);
+      clusters.push_back(i);
+    }
+  }
+  const Statistic apart = summarize(one);
+  const Statistic together = summarize(many, clusters);
+  EXPECT_NEAR(together.mean, apart.mean, 1e-12);
+  EXPECT_NEAR(*together.ci_low, *apart.ci_low, 1e-9);
+  EXPECT_NEAR(*together.ci_high, *apart.ci_high, 1e-9);
+  EXPECT_LT(*summarize(many).ci_high, *together.ci_high);
+  EXPECT_FALSE(summarize({1.0, 2.0}, {7, 7}).ci_low) << "one cluster";
 }
 
 }  // namespace
