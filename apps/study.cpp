@@ -18,6 +18,8 @@
 namespace headland::apps {
 namespace {
 
+constexpr int kFilms = 6;  // in the report
+
 template <class Config, class RunStudy>
 Result<FinishedStudy> run_as(const config::Node& node, int max_episodes,
                              const RunStudy& run_study) {
@@ -40,7 +42,7 @@ Result<FinishedStudy> run_episodes_as(const config::Node& node, int max_episodes
   ProgressBar bar("episodes");
   const InterruptGuard guard;
   const StudyRun run{jobs, out, [&bar](double share) { bar.update(share); },
-                     InterruptGuard::interrupted};
+                     InterruptGuard::interrupted, kFilms};
   return run_as<Config>(node, max_episodes,
                         [&](const Config& config) { return run_study(config, run); });
 }

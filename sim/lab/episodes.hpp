@@ -33,6 +33,7 @@ struct StudyRun {
   std::filesystem::path out{};             ///< an existing folder; empty: nothing is kept
   std::function<void(double)> progress{};  ///< gets the share that is done; one call at a time
   std::function<bool()> stopped{};         ///< whether no more episodes shall begin
+  int films_count = 0;                     ///< of its episodes, to be looked at; about so many
 };
 
 /// Runs `work` for each cell and run, `run.jobs` at once (it must be safe for that, and depend on
