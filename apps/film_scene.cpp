@@ -23,7 +23,7 @@ Polygon circle(const Point2& centre, double radius) {
   return polygon;
 }
 
-std::vector<ReportFeature> features_of(const Film& film) {
+std::vector<ReportFeature> features_of(const Film& film, double first_s, double last_s) {
   std::vector<ReportFeature> features;
   ReportFeature path = ReportFeature::line("plan", "", film.path);
   path.leg_kind = "transit";
@@ -37,6 +37,7 @@ std::vector<ReportFeature> features_of(const Film& film) {
     features.push_back(ReportFeature::point("poi", place.name, place.position));
   }
   for (const FilmEvent& event : film.events) {
+    if (event.time_s < first_s || event.time_s > last_s) continue;
     ReportFeature mark = ReportFeature::point(event.kind, event.text, event.position);
     mark.t_s = event.time_s;
     features.push_back(std::move(mark));
@@ -88,14 +89,37 @@ ReportAgents agents_of(const std::vector<const FilmFrame*>& frames) {
   return agents;
 }
 
+// Three quarters of the way through what is shown.
+double worst_moment(const Film& film) {
+  for (const char* kind : {"given_up", "contact", "near_robot", "near_agent"}) {
+    for (const FilmEvent& event : film.events) {
+      if (event.kind == kind) return event.time_s;
+    }
+  }
+  return 0.0;
+}
+
+std::vector<const FilmFrame*> shown_frames(const Film& film) {
+  std::vector<const FilmFrame*> shown;
+  if (film.frames.size() < 2) return shown;
+  const double step = film.frames[1].time_s - film.frames[0].time_s;
+  const std::size_t longest = std::max<std::size_t>(1, std::lround(kLongestPeriod / step));
+  const std::size_t stride = std::min(longest, film.frames.size() / kMostFilmFrames + 1);
+  const std::size_t length = std::min(film.frames.size(), stride * kMostFilmFrames);
+  const double before = 0.75 * static_cast<double>(length);
+  const double first = std::max(0.0, worst_moment(film) / step - before);
+  const std::size_t begin = std::min(static_cast<std::size_t>(first), film.frames.size() - length);
+  for (std::size_t i = begin; i < begin + length; i += stride) shown.push_back(&film.frames[i]);
+  return shown;
+}
+
 }  // namespace
 
 ReportEpisode film_episode(const Film& film) {
-  std::vector<const FilmFrame*> frames;
-  const std::size_t stride = film.frames.size() / kMostFilmFrames + 1;
-  for (std::size_t i = 0; i < film.frames.size(); i += stride) frames.push_back(&film.frames[i]);
+  const std::vector<const FilmFrame*> frames = shown_frames(film);
   ReportEpisode episode{film.name, film.note, {}};
-  episode.scene.features = features_of(film);
+  if (frames.empty()) return episode;
+  episode.scene.features = features_of(film, frames.front()->time_s, frames.back()->time_s);
   episode.scene.agents = agents_of(frames);
   episode.scene.vehicles = {
       {.name = "robot", .series = series_of(frames), .outline = film.outline}};

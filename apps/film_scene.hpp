@@ -6,8 +6,10 @@
 
 namespace headland::apps {
 
-/// Frames of a film longer than this are thinned out evenly; the page moves things between them.
+/// Longer films are thinned out evenly (the page moves things between frames) to kLongestPeriod; of
+/// those that are still longer, the time around the worst event is shown.
 inline constexpr int kMostFilmFrames = 500;
+inline constexpr double kLongestPeriod = 0.5;  // [s]
 
 /// A film as the report plays it: the planned path, places, what happened, the robot's drive, and
 /// those around it.

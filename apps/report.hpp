@@ -29,7 +29,7 @@ struct ReportTile {
 
 /// One thing on the map. Kinds the page knows: parcel, headland, road, keep_out, row, row_done,
 /// gate, poi, charger, plan (the planned path, one feature per leg), goal (to be reached), and what
-/// happened at a moment: near_agent, near_robot (by whose doing), contact, given_up.
+/// happened at a moment: near_agent, near_robot (by whose doing), near_miss, contact, given_up.
 struct ReportFeature {
   std::string kind;
   std::string id{};

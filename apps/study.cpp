@@ -100,7 +100,7 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   if (options.json) {
     fmt::print("{}", results);
   } else {
-    fmt::print("{}{}", cells_text(finished->result), report_line(options.out));
+    fmt::print("{}{}", study_text(finished->result), report_line(options.out));
   }
   return 0;
 }

@@ -35,6 +35,7 @@ export const kLayers: Layer[] = [
   {key: 'charger', label: 'Chargers', stroke: 'leg-charge', mark: 'bolt'},
   {key: 'near_agent', label: 'Near-collision, the agent\u2019s doing', stroke: 'near-agent', mark: 'diamond'},
   {key: 'near_robot', label: 'Near-collision, the robot\u2019s doing', stroke: 'near-robot', mark: 'diamond'},
+  {key: 'near_miss', label: 'Near misses', stroke: 'near-robot', mark: 'diamond'},
   {key: 'contact', label: 'Contact', stroke: 'bad', mark: 'square'},
   {key: 'given_up', label: 'Given up', stroke: 'bad', mark: 'square'},
 ];

@@ -56,8 +56,8 @@ export class Player {
           const event = find(this.link.current.time! + kLeadIn);
           if (event) this.go_to(event.t_s! - kLeadIn);
         }}, text);
-    return [jump('Event before', '\u23ee', (t) => [...this.events].reverse().find((e) => e.t_s! < t - 0.05)),
-            jump('Next event', '\u23ed', (t) => this.events.find((e) => e.t_s! > t + 0.05))];
+    return [jump('Event before', '|\u25c0', (t) => [...this.events].reverse().find((e) => e.t_s! < t - 0.05)),
+            jump('Next event', '\u25b6|', (t) => this.events.find((e) => e.t_s! > t + 0.05))];
   }
 
   private tick(event: Feature): HTMLElement {

@@ -31,7 +31,7 @@ struct FilmFrame {
 struct FilmEvent {
   double time_s = 0.0;
   Point2 position{0.0, 0.0};  ///< [m, map]
-  std::string kind;           ///< near_agent or near_robot (by whose doing), contact, given_up
+  std::string kind;  ///< near_agent, near_robot (by whose doing), near_miss, contact, given_up
   std::string text;
 };
 

@@ -18,7 +18,7 @@ constexpr double kFree = 3.0;          // around the robot no agent starts [m]
 constexpr double kStill = 0.05;        // slower, the robot is not at fault [m/s]
 constexpr double kStanding = 0.01;     // [m/s]
 constexpr double kSamplePeriod = 5.0;  // of the displacement [s]
-constexpr double kFilmed = 15.0;       // around the robot, agents are filmed [m]
+constexpr double kFilmed = 12.0;       // around the robot, agents are filmed [m]
 constexpr double kFilmedPath = 0.5;    // between points of the filmed path [m]
 
 class Drive {

@@ -125,7 +125,7 @@ class Drive {
     if (film_ != nullptr && gap < 0.0) {
       film_->events.push_back({time_, robot_.position(), "contact", "collision"});
     } else if (film_ != nullptr && near && !near_) {
-      film_->events.push_back({time_, robot_.position(), "near_robot", "near miss"});
+      film_->events.push_back({time_, robot_.position(), "near_miss", "near miss"});
     }
     near_ = near;
   }
