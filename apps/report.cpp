@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/output_files.hpp"
+#include "apps/packed_numbers.hpp"
 #include "apps/report_page.hpp"
 #include "apps/report_terrain.hpp"
 
@@ -77,6 +78,7 @@ Json to_json(const ReportFeature& feature) {
   if (feature.vehicle) json["vehicle"] = *feature.vehicle;
   if (feature.leg) json["leg"] = *feature.leg;
   if (!feature.leg_kind.empty()) json["leg_kind"] = feature.leg_kind;
+  if (feature.t_s) json["t_s"] = rounded(*feature.t_s, kMillimetres);
   return json;
 }
 
@@ -99,7 +101,8 @@ std::optional<Error> uneven(const ReportSeries& series) {
   const std::size_t size = series.s_m.size();
   for (const std::size_t other :
        {series.x_m.size(), series.y_m.size(), series.error_m.size(), series.steering_deg.size(),
-        series.soc.size(), series.speed_mps.size(), series.leg.size()}) {
+        series.soc.size(), series.speed_mps.size(), series.leg.size(), series.t_s.size(),
+        series.yaw_rad.size(), series.clearance_m.size()}) {
     if (other != size && other != 0) {
       return Error{ErrorCode::kInternal,
                    fmt::format("a report column has {} values, s_m has {}", other, size),
@@ -109,12 +112,12 @@ std::optional<Error> uneven(const ReportSeries& series) {
   return std::nullopt;
 }
 
-std::optional<Error> check(const Report& report) {
-  for (const ReportVehicle& vehicle : report.vehicles) {
+std::optional<Error> check(const ReportScene& scene) {
+  for (const ReportVehicle& vehicle : scene.vehicles) {
     if (auto error = uneven(vehicle.series)) return error;
   }
-  if (!report.terrain) return std::nullopt;
-  const ReportTerrain& terrain = *report.terrain;
+  if (!scene.terrain) return std::nullopt;
+  const ReportTerrain& terrain = *scene.terrain;
   if (static_cast<std::size_t>(terrain.columns) * static_cast<std::size_t>(terrain.rows) ==
       terrain.heights_m.size()) {
     return std::nullopt;
@@ -135,7 +138,10 @@ Json to_json(const ReportSeries& series, int most) {
           {"steering_deg", picked(series.steering_deg, indices, 1e2)},
           {"soc", picked(series.soc, indices, kSocSteps)},
           {"speed_mps", picked(series.speed_mps, indices, 1e3)},
-          {"leg", picked(series.leg, indices, 1.0)}};
+          {"leg", picked(series.leg, indices, 1.0)},
+          {"t_s", picked(series.t_s, indices, 1e2)},
+          {"yaw_rad", picked(series.yaw_rad, indices, 1e3)},
+          {"clearance_m", picked(series.clearance_m, indices, 1e2)}};
 }
 
 Json to_json(const ReportStop& stop) {
@@ -153,14 +159,37 @@ Json to_json(const ReportReason& reason) {
 }
 
 Json to_json(const ReportTerrain& terrain) {
-  const PackedHeights packed = pack(terrain.heights_m);
+  const PackedNumbers packed = pack(terrain.heights_m);
   return {{"south_west_m", to_json(terrain.south_west)},
           {"cell_m", six_digits(terrain.cell_m)},
           {"columns", terrain.columns},
           {"rows", terrain.rows},
-          {"low_m", rounded(packed.low_m, kMillimetres)},
-          {"high_m", rounded(packed.high_m, kMillimetres)},
+          {"low_m", rounded(packed.low, kMillimetres)},
+          {"high_m", rounded(packed.high, kMillimetres)},
           {"heights", packed.base64}};
+}
+
+// The positions of all tracks, one after the other, as x, y, x, y, ...
+Json to_json(const ReportAgents& agents) {
+  Json tracks = Json::array();
+  std::vector<double> places_m;
+  for (const ReportAgent& agent : agents.tracks) {
+    tracks.push_back({agent.first, agent.positions.size(), rounded(agent.radius_m, kMillimetres)});
+    for (const Point2& p : agent.positions) places_m.insert(places_m.end(), {p.x(), p.y()});
+  }
+  const PackedNumbers packed = pack(places_m);
+  return {{"start_s", rounded(agents.start_s, kMillimetres)},
+          {"period_s", rounded(agents.period_s, kMillimetres)},
+          {"tracks", std::move(tracks)},
+          {"low_m", packed.low},
+          {"high_m", packed.high},
+          {"positions", packed.base64}};
+}
+
+Json to_json(const Footprint& outline) {
+  return {{"front_m", rounded(outline.front_m, kMillimetres)},
+          {"rear_m", rounded(outline.rear_m, kMillimetres)},
+          {"width_m", rounded(outline.width_m, kMillimetres)}};
 }
 
 Json to_json(const ReportTable& table) {
@@ -206,6 +235,8 @@ Json to_json(const ReportTile& tile) {
           {"hint", tile.hint}};
 }
 
+Json to_json(const ReportEpisode& episode);
+
 template <class T>
 Json all_of(const std::vector<T>& items) {
   Json array = Json::array();
@@ -217,6 +248,7 @@ Json to_json(const ReportVehicle& vehicle, int most_points) {
   Json json = {{"name", vehicle.name},
                {"series", to_json(vehicle.series, most_points)},
                {"stops", all_of(vehicle.stops)}};
+  if (vehicle.outline) json["outline"] = to_json(*vehicle.outline);
   if (vehicle.reserve_soc) json["reserve_soc"] = rounded(*vehicle.reserve_soc, kSocSteps);
   return json;
 }
@@ -229,6 +261,18 @@ Json vehicles_json(const std::vector<ReportVehicle>& vehicles) {
     array.push_back(to_json(vehicle, std::max(share, kLeastPoints)));
   }
   return array;
+}
+
+Json to_json(const ReportScene& scene) {
+  Json json = {{"map", {{"features", all_of(scene.features)}}},
+               {"vehicles", vehicles_json(scene.vehicles)}};
+  if (scene.terrain) json["terrain"] = to_json(*scene.terrain);
+  if (!scene.agents.tracks.empty()) json["agents"] = to_json(scene.agents);
+  return json;
+}
+
+Json to_json(const ReportEpisode& episode) {
+  return {{"name", episode.name}, {"note", episode.note}, {"scene", to_json(episode.scene)}};
 }
 
 std::string_view name_of(ReportKind kind) {
@@ -302,6 +346,9 @@ std::vector<int> thin_out(int size, const std::vector<double>& values, int count
 
 Result<std::string> report_json(const Report& report) {
   if (auto error = check(report)) return tl::unexpected<Error>(std::move(*error));
+  for (const ReportEpisode& episode : report.episodes) {
+    if (auto error = check(episode.scene)) return tl::unexpected<Error>(std::move(*error));
+  }
   Json json = {{"title", report.title},
                {"kind", name_of(report.kind)},
                {"status", report.status},
@@ -310,12 +357,11 @@ Result<std::string> report_json(const Report& report) {
                {"config_hash", report.config_hash},
                {"config_yaml", report.config_yaml},
                {"tiles", all_of(report.tiles)},
-               {"map", {{"features", all_of(report.features)}}},
-               {"vehicles", vehicles_json(report.vehicles)},
                {"why", all_of(report.why)},
                {"tables", all_of(report.tables)},
-               {"plots", all_of(report.plots)}};
-  if (report.terrain) json["terrain"] = to_json(*report.terrain);
+               {"plots", all_of(report.plots)},
+               {"episodes", all_of(report.episodes)}};
+  json.update(to_json(static_cast<const ReportScene&>(report)));
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/base/result.hpp"
 #include "core/geometry/polygon.hpp"
+#include "core/model/vehicle.hpp"
 
 namespace headland {
 
@@ -27,7 +28,8 @@ struct ReportTile {
 };
 
 /// One thing on the map. Kinds the page knows: parcel, headland, road, keep_out, row, row_done,
-/// gate, poi, charger, plan (the planned path, one feature per leg).
+/// gate, poi, charger, plan (the planned path, one feature per leg), goal (to be reached), and what
+/// happened at a moment: near_agent, near_robot (by whose doing), near_miss, contact, given_up.
 struct ReportFeature {
   std::string kind;
   std::string id{};
@@ -38,6 +40,7 @@ struct ReportFeature {
   std::optional<int> vehicle{};  ///< whose plan: an index of Report::vehicles
   std::optional<int> leg{};      ///< of the plan; legs are the numbers of Path
   std::string leg_kind{};        ///< row, turn, transit, task or charge
+  std::optional<double> t_s{};   ///< when it happened, on the clock of the series
 
   static ReportFeature point(std::string kind, std::string name, const Point2& position);
   static ReportFeature line(std::string kind, std::string name, Polyline line);
@@ -55,6 +58,9 @@ struct ReportSeries {
   std::vector<double> soc;           ///< state of charge, 0 to 1
   std::vector<double> speed_mps;     ///< [m/s]
   std::vector<int> leg;
+  std::vector<double> t_s{};          ///< since the start; with yaw_rad: the drive can be played
+  std::vector<double> yaw_rad{};      ///< counter-clockwise from east
+  std::vector<double> clearance_m{};  ///< to the nearest agent, outline to outline
 };
 
 /// A charge on the way.
@@ -70,6 +76,20 @@ struct ReportVehicle {
   std::optional<double> reserve_soc{};
   ReportSeries series{};
   std::vector<ReportStop> stops{};
+  std::optional<Footprint> outline{};
+};
+
+/// Somebody who is seen for a while, once a period.
+struct ReportAgent {
+  double radius_m = 0.3;
+  int first = 0;  ///< the period of the first position
+  std::vector<Point2> positions{};
+};
+
+struct ReportAgents {
+  double start_s = 0.0;  ///< on the clock of the series
+  double period_s = 1.0;
+  std::vector<ReportAgent> tracks{};
 };
 
 /// Heights under the map, on a grid of points.
@@ -114,10 +134,25 @@ struct ReportPlot {
   std::vector<Series> series;
 };
 
+/// What a map shows, and plays if its vehicles' series have times.
+struct ReportScene {
+  std::vector<ReportFeature> features{};
+  std::vector<ReportVehicle> vehicles{};
+  std::optional<ReportTerrain> terrain{};
+  ReportAgents agents{};
+};
+
+/// A drive among others of its kind.
+struct ReportEpisode {
+  std::string name;
+  std::string note;  ///< why it is shown
+  ReportScene scene;
+};
+
 enum class ReportKind { kPlan, kRun, kStudy };
 
 /// All that report.html shows. An empty part takes no room on the page.
-struct Report {
+struct Report : ReportScene {
   std::string title;
   ReportKind kind = ReportKind::kPlan;
   std::string status;  ///< a word: optimal, feasible, completed, failed, ...
@@ -126,12 +161,10 @@ struct Report {
   std::string config_hash;
   std::string config_yaml;
   std::vector<ReportTile> tiles;
-  std::vector<ReportFeature> features;
-  std::vector<ReportVehicle> vehicles;
-  std::optional<ReportTerrain> terrain;
   std::vector<ReportReason> why;
   std::vector<ReportTable> tables;
   std::vector<ReportPlot> plots;
+  std::vector<ReportEpisode> episodes;
 };
 
 /// Series longer than this, over all vehicles together, are thinned out before they are written.

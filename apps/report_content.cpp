@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/film_scene.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/report_terrain.hpp"
 
@@ -178,6 +179,8 @@ ReportSeries driven_series(const Run& run) {
     series.soc.push_back(row.soc);
     series.speed_mps.push_back(row.speed_mps);
     series.leg.push_back(row.leg);
+    series.t_s.push_back(row.t_s);
+    series.yaw_rad.push_back(row.yaw_rad);
   }
   const bool steers = std::any_of(series.steering_deg.begin(), series.steering_deg.end(),
                                   [](double angle) { return angle != 0.0; });
@@ -313,6 +316,7 @@ Report run_report(const PlannedMission& planned, const FleetRun& run, double rea
   add_plan_tiles(planned, report);
   for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
     report.vehicles[v].series = driven_series(run.vehicles[v]);
+    report.vehicles[v].outline = planned.plan.vehicles[v].vehicle.footprint;
     report.vehicles[v].stops = charge_stops(planned.plan.vehicles[v], &run.vehicles[v]);
   }
   return report;
@@ -353,6 +357,7 @@ Report study_report(const FinishedStudy& study) {
     }
     report.plots.push_back(std::move(shown));
   }
+  for (const Film& film : result.films) report.episodes.push_back(film_episode(film));
   return report;
 }
 

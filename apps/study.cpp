@@ -20,6 +20,8 @@
 namespace headland::apps {
 namespace {
 
+constexpr int kFilms = 6;  // in the report
+
 std::filesystem::path folder_of(const config::Node& node) {
   return std::filesystem::path(node.where().file).parent_path();
 }
@@ -45,8 +47,12 @@ Result<FinishedStudy> run_episodes_as(const config::Node& node, int max_episodes
                                       const std::string& out, const RunStudy& run_study) {
   ProgressBar bar("episodes");
   const InterruptGuard guard;
-  const StudyRun run{jobs, out, [&bar](double share) { bar.update(share); },
-                     InterruptGuard::interrupted, folder_of(node)};
+  const StudyRun run{jobs,
+                     out,
+                     [&bar](double share) { bar.update(share); },
+                     InterruptGuard::interrupted,
+                     folder_of(node),
+                     kFilms};
   return run_as<Config>(node, max_episodes,
                         [&](const Config& config) { return run_study(config, run); });
 }
@@ -110,7 +116,7 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   if (options.json) {
     fmt::print("{}", results);
   } else {
-    fmt::print("{}{}", cells_text(finished->result), report_line(options.out));
+    fmt::print("{}{}", study_text(finished->result), report_line(options.out));
   }
   return 0;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/study_output.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -56,6 +58,29 @@ std::string cells_csv(const StudyResult& result) {
   return text;
 }
 
+namespace {
+
+std::string table_text(const StudyTable& table) {
+  std::vector<std::size_t> widths;
+  for (const std::string& name : table.header) widths.push_back(name.size());
+  for (const auto& row : table.rows) {
+    for (std::size_t i = 0; i < std::min(row.size(), widths.size()); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  std::string text = table.title + "\n";
+  const auto add = [&](const std::vector<std::string>& row) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += fmt::format("  {:<{}}", row[i], i < widths.size() ? widths[i] : 0);
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  };
+  add(table.header);
+  for (const auto& row : table.rows) add(row);
+  return text;
+}
+
 std::string cells_text(const StudyResult& result) {
   std::string text;
   for (const StudyCell& cell : result.cells) {
@@ -66,6 +91,15 @@ std::string cells_text(const StudyResult& result) {
     }
     text += "\n";
   }
+  return text;
+}
+
+}  // namespace
+
+std::string study_text(const StudyResult& result) {
+  if (result.tables.empty()) return cells_text(result);
+  std::string text;
+  for (const StudyTable& table : result.tables) text += table_text(table) + "\n";
   return text;
 }
 

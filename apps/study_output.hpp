@@ -17,7 +17,7 @@ struct FinishedStudy {
 std::string results_json(const FinishedStudy& study);
 /// One line per cell and metric.
 std::string cells_csv(const StudyResult& result);
-/// One line per cell, for a person.
-std::string cells_text(const StudyResult& result);
+/// The study's tables, or where it has none a line per cell, for a person.
+std::string study_text(const StudyResult& result);
 
 }  // namespace headland::apps

@@ -50,3 +50,11 @@ export function column_decimals(values: number[], significant = 4): number {
 export function distance(metres: number): string {
   return metres >= 1000 ? `${number(metres / 1000)} km` : `${number(metres)} m`;
 }
+
+/// A time for people: 1:07.5, 1:02:03.0.
+export function clock(seconds: number): string {
+  const tenths = Math.round(10 * Math.max(0, seconds));
+  const [hours, minutes] = [Math.floor(tenths / 36000), Math.floor(tenths / 600) % 60];
+  const rest = ((tenths % 600) / 10).toFixed(1).padStart(4, '0');
+  return hours > 0 ? `${hours}:${String(minutes).padStart(2, '0')}:${rest}` : `${minutes}:${rest}`;
+}

@@ -29,9 +29,15 @@ export const kLayers: Layer[] = [
   {key: 'plan_transit', label: 'Plan: transit', stroke: 'leg-transit', width: 1.8},
   {key: 'plan_charge', label: 'Plan: to charge', stroke: 'leg-charge', width: 1.8, dash: [6, 4]},
   {key: 'driven', label: 'Driven', stroke: 'driven', width: 2.6},
+  {key: 'goal', label: 'Goals', fill: 'map-goal', stroke: 'map-goal-edge', width: 1.2},
   {key: 'gate', label: 'Gates', stroke: 'map-gate', mark: 'square'},
   {key: 'poi', label: 'Places', stroke: 'map-poi', mark: 'circle'},
   {key: 'charger', label: 'Chargers', stroke: 'leg-charge', mark: 'bolt'},
+  {key: 'near_agent', label: 'Near-collision, the agent\u2019s doing', stroke: 'near-agent', mark: 'diamond'},
+  {key: 'near_robot', label: 'Near-collision, the robot\u2019s doing', stroke: 'near-robot', mark: 'diamond'},
+  {key: 'near_miss', label: 'Near misses', stroke: 'near-robot', mark: 'diamond'},
+  {key: 'contact', label: 'Contact', stroke: 'bad', mark: 'square'},
+  {key: 'given_up', label: 'Given up', stroke: 'bad', mark: 'square'},
 ];
 
 const kOther: Layer = {key: 'other', label: 'Other', stroke: 'muted', width: 1, mark: 'diamond'};
@@ -46,6 +52,11 @@ const kLegLayers: Record<LegKind, string> = {
 
 const kAliases: Record<string, string> = {drivable: 'headland', row_parcel: 'parcel', free_parcel: 'parcel'};
 
+/// The layer of a kind of feature; a plan's depends on more.
+export function layer_of(kind: string): Layer {
+  return kLayers.find((layer) => layer.key === kind) ?? kOther;
+}
+
 /// The layers of one map. The plans of several vehicles are told apart by vehicle, that of a single
 /// one by what is driven.
 export class LayerSet {
@@ -59,7 +70,7 @@ export class LayerSet {
 
   of(feature: Feature): Layer {
     const kind = kAliases[feature.kind] ?? feature.kind;
-    if (kind !== 'plan') return kLayers.find((layer) => layer.key === kind) ?? kOther;
+    if (kind !== 'plan') return layer_of(kind);
     const key = kLegLayers[feature.leg_kind ?? 'transit'] ?? 'plan_transit';
     return this.fleet[feature.vehicle ?? -1] ?? kLayers.find((layer) => layer.key === key)!;
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the map, the plots and the tables tell each other.
+// What the map, the plots, the tables and the player tell each other.
+import {duration} from './motion';
+import {Scene} from './types';
 
 export interface Cursor {
   s: number;            // driven distance [m]
@@ -15,11 +17,19 @@ export interface Selection {
   cursor: Cursor|null;          // under the pointer
   range: [number, number]|null; // driven distance shown in the plots [m]; null: all
   leg: LegOf|null;              // picked in a table
+  time: number|null;            // that the map shows [s]; null: nothing moves
+  follow: boolean;              // whether the map keeps the vehicle in its middle
 }
 
 export class Link {
-  private state: Selection = {cursor: null, range: null, leg: null};
+  private state: Selection;
   private listeners: ((state: Selection, what: keyof Selection) => void)[] = [];
+
+  /// At the scene's beginning; an episode among agents is followed.
+  constructor(scene: Scene) {
+    const time = duration(scene)?.[0] ?? null;
+    this.state = {cursor: null, range: null, leg: null, time, follow: time !== null && scene.agents !== undefined};
+  }
 
   get current(): Readonly<Selection> {
     return this.state;

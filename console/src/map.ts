@@ -14,16 +14,21 @@ import {legend} from './legend';
 import {LegOf, Link} from './link';
 import {ColorBar, Labels, coordinates_text, make_path, paint_color_bars, paint_dot, paint_layer, paint_mark, paint_north,
         paint_scale_bar} from './map_paint';
+import {duration, motion_at, plays} from './motion';
+import {Moving} from './moving';
+import {Player} from './player';
 import {nearest} from './plot';
 import {sample_rows} from './sample';
 import {Relief, tint_text} from './terrain';
-import {Feature, Position, Report, Terrain, Vehicle} from './types';
+import {Feature, Position, Scene, Terrain, Vehicle} from './types';
 import {Bounds, View, empty_bounds, extend, nearest_sample} from './view';
 
 const kMaxZoom = 400;
 const kFillOnRelief = 0.45; // opacity of areas above the relief
 const kBandWidth = 0.6; // m; of a plan below a driven path
 const kFleetBand = 6;  // px; the same where there are several vehicles
+const kFollowed = 30;  // m around a followed vehicle
+const kEventShown = 1; // s before and after it is marked
 const kGrab = 28; // px within which the pointer catches the nearest sample
 
 export class MapView {
@@ -39,6 +44,7 @@ export class MapView {
   private readonly vehicles: Vehicle[];
   private readonly terrain: Terrain|undefined;
   private readonly relief: Relief|null;
+  private readonly moving: Moving;
   private readonly set: LayerSet;
   private readonly layers: Layer[];
   private readonly hidden = new Set<Layer>();
@@ -54,11 +60,12 @@ export class MapView {
   private readonly draw = once_per_frame(() => this.paint());
   private readonly draw_overlay = once_per_frame(() => this.paint_overlay());
 
-  constructor(report: Report, private readonly link: Link, private readonly theme: () => Theme) {
-    const features = this.features = report.map.features;
-    this.vehicles = report.vehicles;
-    this.terrain = report.terrain;
-    this.relief = report.terrain ? new Relief(report.terrain) : null;
+  constructor(private readonly scene: Scene, private readonly link: Link, private readonly theme: () => Theme) {
+    const features = this.features = scene.map.features;
+    this.vehicles = scene.vehicles;
+    this.terrain = scene.terrain;
+    this.relief = scene.terrain ? new Relief(scene.terrain) : null;
+    this.moving = new Moving(scene);
     this.has_driven = this.vehicles.some(({series}) => series.x_m.length > 1 && series.error_m.length > 0);
     this.set = new LayerSet(this.vehicles);
     this.layers = this.set.used(features, this.has_driven, this.terrain);
@@ -94,6 +101,7 @@ export class MapView {
         button('Show all', '\u2922', () => this.fit()));
     return element('section', {class: 'card map-card', 'aria-label': 'Map'},
         element('div', {class: 'map-frame'}, this.ground, this.overlay, controls, this.readout, this.tip),
+        ...(duration(this.scene) ? [new Player(this.scene, this.link).root] : []),
         legend(this.layers, this.relief ? {contours: `Contours, every ${number(this.relief.interval_m)} m`} : {}, (layer, shown) => {
           if (shown) this.hidden.delete(layer);
           else this.hidden.add(layer);
@@ -105,7 +113,10 @@ export class MapView {
     this.zoom.on('zoom', () => this.repaint());
     select(this.overlay).call(this.zoom).on('dblclick.zoom', null);
     this.overlay.addEventListener('dblclick', () => this.fit());
-    this.overlay.addEventListener('pointermove', (event) => this.hover(event.offsetX, event.offsetY));
+    this.overlay.addEventListener('pointermove', (event) => {
+      if (event.buttons !== 0) this.link.set('follow', false);
+      this.hover(event.offsetX, event.offsetY);
+    });
     this.overlay.addEventListener('pointerleave', () => {
       this.tip.hidden = true;
       this.readout.textContent = '';
@@ -114,10 +125,13 @@ export class MapView {
     this.overlay.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => {
       this.view = new View(this.bounds, this.overlay.clientWidth, this.overlay.clientHeight);
+      this.follow(true);
       this.repaint();
     }).observe(this.overlay);
     this.link.listen((state, what) => {
-      if (what === 'cursor') this.draw_overlay();
+      if (what === 'cursor' || what === 'time') this.draw_overlay();
+      if (what === 'cursor') return;
+      if (what === 'time' || what === 'follow') this.follow(what === 'follow');
       if (what === 'range') this.show_range(state.range);
       if (what === 'leg' && state.leg !== null) this.fit(this.leg_bounds(state.leg));
       if (what === 'leg') this.repaint();
@@ -155,8 +169,22 @@ export class MapView {
     return [t.x + t.k * px, t.y + t.k * py];
   }
 
+  /// Brings the vehicle into the middle, if it is followed; `nearer`: and its surroundings up.
+  private follow(nearer: boolean): void {
+    const {time, follow} = this.link.current;
+    const series = this.vehicles[0]?.series;
+    if (!follow || time === null || !series || !plays(series)) return;
+    const {clientWidth: width, clientHeight: height} = this.overlay;
+    const close = nearer ? Math.min(width, height) / (kFollowed * this.view.scale) : 0;
+    const k = Math.min(kMaxZoom, Math.max(this.transform().k, close));
+    const {x, y} = motion_at(series, time);
+    const [px, py] = this.view.to_screen(x, y);
+    this.zoom.transform(select(this.overlay), zoomIdentity.translate(width / 2 - k * px, height / 2 - k * py).scale(k));
+  }
+
   /// Shows the bounds given, or all.
   private fit(bounds: Bounds|null = null): void {
+    this.link.set('follow', false);
     let target = zoomIdentity;
     if (bounds && bounds.max_x >= bounds.min_x) {
       const {clientWidth: width, clientHeight: height} = this.overlay;
@@ -298,7 +326,7 @@ export class MapView {
       const [x, y] = this.to_screen(...(f.coordinates as Position));
       paint_mark(context, layer.mark ?? 'diamond', x, y, theme.get(layer.stroke ?? 'muted'), theme.get('map-ground'));
       const text = f.name || f.id;
-      if (text) labels.write(text, x + 12, y);
+      if (text && f.t_s === undefined) labels.write(text, x + 12, y);
     }
   }
 
@@ -311,11 +339,33 @@ export class MapView {
     });
   }
 
+  // What is where, what is headed for, and what happens.
+  private paint_moment(context: CanvasRenderingContext2D, time: number, theme: Theme): void {
+    this.in_metres(context, (scale) => {
+      const goals = this.vehicles.filter(({series}) => plays(series)).flatMap(({series}) => {
+        const leg = series.leg[motion_at(series, time).sample];
+        return this.features.filter((f) => f.kind === 'goal' && f.leg === leg);
+      });
+      context.strokeStyle = theme.get('accent');
+      context.lineWidth = 2.5 / scale;
+      context.stroke(make_path(goals, this.origin));
+      this.moving.paint(context, this.origin, scale, time, theme);
+    });
+    for (const f of this.features) {
+      if (f.t_s === undefined || Math.abs(time - f.t_s) > kEventShown) continue;
+      context.beginPath();
+      context.arc(...this.to_screen(...(f.coordinates as Position)), 13, 0, 2 * Math.PI);
+      context.strokeStyle = theme.get(this.set.of(f).stroke ?? 'muted');
+      context.lineWidth = 3;
+      context.stroke();
+    }
+  }
+
   private paint_overlay(): void {
     const context = begin_drawing(this.overlay);
     if (!context) return;
     const theme = this.theme();
-    const {cursor, leg} = this.link.current;
+    const {cursor, leg, time} = this.link.current;
     if (leg !== null) {
       this.in_metres(context, (scale) => {
         context.strokeStyle = theme.get('accent');
@@ -324,6 +374,7 @@ export class MapView {
         context.stroke(make_path(this.leg_features(leg), this.origin));
       });
     }
+    if (time !== null) this.paint_moment(context, time, theme);
     if (cursor === null) return;
     this.vehicles.forEach(({series}, i) => {
       if (series.x_m.length === 0 || (cursor.vehicle ?? i) !== i) return;

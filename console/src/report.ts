@@ -4,9 +4,8 @@ import {current_theme} from './color';
 import {element} from './dom';
 import {free_plot} from './free_plots';
 import {Link} from './link';
-import {MapView} from './map';
 import {Part} from './plot';
-import {run_plots} from './run_plots';
+import {episodes_view, has_map, scene_view} from './scene';
 import {page_head, tiles} from './summary';
 import {table} from './table';
 import {Report} from './types';
@@ -48,33 +47,23 @@ function build(report: Report): void {
   });
   addEventListener('afterprint', () => (choose_theme(choice), repaint()));
 
-  const link = new Link();
+  const link = new Link(report);
   const page: Node[] = [page_head(report, button)];
   if (report.tiles.length) page.push(tiles(report.tiles));
   const names = report.vehicles.map((vehicle) => vehicle.name);
-  const plots = run_plots(report.vehicles, link, get_theme);
-  const has_map = report.map.features.length > 0 || report.vehicles.some((vehicle) => vehicle.series.x_m.length > 0);
-  const row: Node[] = [];
-  if (has_map) {
-    const map = new MapView(report, link, get_theme);
-    parts.push(map);
-    row.push(map.root);
-  }
-  if (plots) {
-    parts.push(plots);
-    row.push(plots.root);
-  }
-  if (row.length) page.push(element('div', {class: row.length > 1 ? 'pair' : 'single'}, ...row));
+  const shown = (part: Part|null) => part ? (parts.push(part), [part.root]) : [];
+  page.push(...shown(scene_view(report, link, get_theme)));
   const grid = element('div', {class: 'plots'});
   for (const data of report.plots) {
     const plot = free_plot(data, get_theme);
     parts.push(plot);
     grid.append(plot.root);
   }
-  const tables = report.tables.map((data) => table(data, has_map ? link : null, names));
+  const tables = report.tables.map((data) => table(data, has_map(report) ? link : null, names));
   if (report.why.length) page.push(why(report.why, names, link));
   // A study's findings come first, its pictures after them.
   page.push(...tables, ...(report.plots.length ? [grid] : []));
+  if (report.episodes.length) page.push(...shown(episodes_view(report.episodes, get_theme)));
   if (report.config_yaml) {
     page.push(element('details', {class: 'card'}, element('summary', {}, 'Effective configuration'),
         element('pre', {tabindex: '0'}, report.config_yaml)));

@@ -4,11 +4,12 @@ import {Theme, kFleetDashes} from './color';
 import {element} from './dom';
 import {fixed, number} from './format';
 import {Link} from './link';
+import {motion_at} from './motion';
 import {Part, Plot, PlotOptions, Shared} from './plot';
 import {PlotData, Vehicle} from './types';
 
 interface Column {
-  key: 'error_m'|'steering_deg'|'soc'|'speed_mps';
+  key: 'error_m'|'steering_deg'|'soc'|'speed_mps'|'clearance_m';
   title: string;
   unit: string;
   options: PlotOptions;
@@ -32,6 +33,8 @@ function columns(vehicles: Vehicle[]): Column[] {
     {key: 'steering_deg', title: 'Steering', unit: '\u00b0, left positive',
      options: {with_zero: true, y_format: (v) => number(v, 3)}},
     {key: 'speed_mps', title: 'Speed', unit: 'm/s', options: {with_zero: true, y_format: (v) => number(v, 3)}},
+    {key: 'clearance_m', title: 'Clearance', unit: 'm to the nearest agent',
+     options: {with_zero: true, y_format: (v) => number(v, 3)}},
     {key: 'soc', title: 'State of charge', unit: '%',
      options: {y_format: percent, references: reserves(vehicles), mark_label: 'charge'}},
   ];
@@ -47,9 +50,14 @@ function plot_data(column: Column, vehicles: Vehicle[]): PlotData {
   return {title: column.title, x_label: 'distance [m]', y_label: column.unit, series};
 }
 
-function shared_by(link: Link): Shared {
+// A single vehicle's plots show where it is at the time that the map shows.
+function shared_by(link: Link, vehicles: Vehicle[]): Shared {
+  const now = () => {
+    const {time} = link.current;
+    return time !== null && vehicles.length === 1 ? motion_at(vehicles[0]!.series, time).s : null;
+  };
   return {
-    cursor: () => link.current.cursor?.s ?? null,
+    cursor: () => link.current.cursor?.s ?? now(),
     set_cursor: (s) => link.set('cursor', s === null ? null : {s, vehicle: null}),
     range: () => link.current.range,
     set_range: (range) => link.set('range', range),
@@ -58,7 +66,7 @@ function shared_by(link: Link): Shared {
 
 /// The card with all plots whose column was measured, or null.
 export function run_plots(vehicles: Vehicle[], link: Link, theme: () => Theme): Part|null {
-  const shared = shared_by(link);
+  const shared = shared_by(link, vehicles);
   const several = vehicles.length > 1;
   const plots = columns(vehicles).filter((c) => vehicles.some((v) => v.series[c.key].length > 1)).map((c) => new Plot(
       plot_data(c, vehicles), {...c.options, height: several ? 240 : 150, left: 36}, shared, theme));
@@ -68,7 +76,7 @@ export function run_plots(vehicles: Vehicle[], link: Link, theme: () => Theme): 
   const hint = element('span', {class: 'hint'}, 'Drag to zoom');
   const repaint = () => plots.forEach((plot) => plot.repaint());
   link.listen((state, what) => {
-    if (what === 'cursor') plots.forEach((plot) => plot.repaint_cursor());
+    if (what === 'cursor' || what === 'time') plots.forEach((plot) => plot.repaint_cursor());
     if (what !== 'range') return;
     reset.hidden = state.range === null;
     hint.textContent = state.range ? `${fixed(state.range[0], 0)} to ${fixed(state.range[1], 0)} m` : 'Drag to zoom';

@@ -1,25 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The relief below the map: heights tinted and lit from the north-west, and contour lines.
 import {oklch_rgb} from './color';
+import {unpack} from './packed';
 import {Position, Terrain} from './types';
 import {round_length} from './view';
 
-const kNone = 65535;
-const kSteps = 65534;
 const kContours = 8;        // about so many
 const kShownSlope = 0.4;    // what the steeper slopes are exaggerated to [m/m]
 const kMostExaggeration = 8;
 
 /// Heights [m] row by row from the south-west; NaN where there is none.
 export function decode(terrain: Terrain): Float32Array {
-  const bytes = atob(terrain.heights);
-  const heights = new Float32Array(terrain.columns * terrain.rows);
-  const step = (terrain.high_m - terrain.low_m) / kSteps;
-  for (let i = 0; i < heights.length; ++i) {
-    const value = bytes.charCodeAt(2 * i) + 256 * bytes.charCodeAt(2 * i + 1);
-    heights[i] = value === kNone ? NaN : terrain.low_m + step * value;
-  }
-  return heights;
+  return unpack(terrain.heights, terrain.low_m, terrain.high_m);
 }
 
 /// Gradient [m/m] to the east and north at grid point i; one-sided at edges, NaN beside a gap.

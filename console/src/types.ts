@@ -22,6 +22,7 @@ export interface Feature {
   vehicle?: number; // of Report.vehicles
   leg?: number;
   leg_kind?: LegKind;
+  t_s?: number; // when it happened, on the clock of the series
 }
 
 /// Columns of equal length; a column that was not measured is empty.
@@ -34,6 +35,9 @@ export interface Series {
   soc: (number | null)[];
   speed_mps: (number | null)[];
   leg: number[];
+  t_s: number[]; // since the start; with yaw_rad: the drive can be played
+  yaw_rad: number[];
+  clearance_m: (number | null)[]; // to the nearest agent, outline to outline
 }
 
 /// A charge on the way.
@@ -49,6 +53,18 @@ export interface Vehicle {
   reserve_soc?: number;
   series: Series;
   stops: Stop[];
+  outline?: {front_m: number; rear_m: number; width_m: number};
+}
+
+/// Those who move beside the vehicles: for each the period of the first position, their number, and
+/// the radius [m]; x and y of all of them one after the other, packed (packed.ts).
+export interface Agents {
+  start_s: number;
+  period_s: number;
+  tracks: [number, number, number][];
+  low_m: number;
+  high_m: number;
+  positions: string;
 }
 
 /// Heights on a grid of points, row by row from the south-west: unsigned, 16 bits, little end first,
@@ -93,7 +109,22 @@ export interface PlotData {
   series: PlotSeries[];
 }
 
-export interface Report {
+/// What a map shows, and plays if the vehicles' series have times.
+export interface Scene {
+  map: {features: Feature[]};
+  vehicles: Vehicle[];
+  terrain?: Terrain;
+  agents?: Agents;
+}
+
+/// A drive among others of its kind.
+export interface Episode {
+  name: string;
+  note: string;
+  scene: Scene;
+}
+
+export interface Report extends Scene {
   title: string;
   kind: 'plan' | 'run' | 'study';
   status: string;
@@ -102,10 +133,8 @@ export interface Report {
   config_hash: string;
   config_yaml: string;
   tiles: Tile[];
-  map: {features: Feature[]};
-  vehicles: Vehicle[];
-  terrain?: Terrain;
   why: Reason[];
   tables: TableData[];
   plots: PlotData[];
+  episodes: Episode[];
 }

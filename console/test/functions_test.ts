@@ -2,7 +2,7 @@
 // Run by node (see tests/CMakeLists.txt); throws at the first thing that is wrong.
 import {oklch, ramp} from '../src/color';
 import {bin_of, error_scale, kBins} from '../src/driven';
-import {column_decimals, fixed, number} from '../src/format';
+import {clock, column_decimals, fixed, number} from '../src/format';
 import {LayerSet} from '../src/layers';
 import {Link} from '../src/link';
 import {key_style, nearest} from '../src/plot';
@@ -12,6 +12,9 @@ import {contour, decode, gradient, light} from '../src/terrain';
 import {line_points} from '../src/thin';
 import {View, nearest_sample, round_length} from '../src/view';
 import {subject} from '../src/why';
+import {Tracks, duration, motion_at, plays} from '../src/motion';
+import {events_of, first_rate} from '../src/player';
+import {Scene, Series} from '../src/types';
 
 function equal(actual: unknown, expected: unknown, what: string): void {
   const [a, b] = [JSON.stringify(actual), JSON.stringify(expected)];
@@ -95,7 +98,8 @@ function contours_lie_at_their_level(): void {
 }
 
 function vehicles_are_told_apart(): void {
-  const series = {s_m: [], x_m: [], y_m: [], error_m: [], steering_deg: [], soc: [], speed_mps: [], leg: []};
+  const series = {s_m: [], x_m: [], y_m: [], error_m: [], steering_deg: [], soc: [], speed_mps: [], leg: [],
+                  t_s: [], yaw_rad: [], clearance_m: []};
   const vehicle = (name: string, reserve_soc: number) => ({name, reserve_soc, series, stops: []});
   const plan = {kind: 'plan', type: 'LineString' as const, coordinates: [], leg_kind: 'row' as const, vehicle: 1};
   const fleet = new LayerSet([vehicle('a', 0.1), vehicle('b', 0.2)]);
@@ -111,8 +115,48 @@ function vehicles_are_told_apart(): void {
   equal(subject({text: '', vehicle: 0, leg: 7}, ['a']), 'leg 7', 'of one vehicle');
 }
 
+function drive(): Series {
+  return {s_m: [0, 2, 2], x_m: [0, 2, 2], y_m: [5, 5, 5], error_m: [], steering_deg: [], soc: [], speed_mps: [], leg: [],
+          t_s: [0, 2, 3], yaw_rad: [3, -3, -3], clearance_m: []};
+}
+
+function vehicles_move_between_samples(): void {
+  const series = drive();
+  const at = motion_at(series, 1);
+  equal([at.x, at.y, at.s, at.sample], [1, 5, 1, 0], 'halfway');
+  equal(Math.cos(at.yaw).toFixed(6), '-1.000000', 'turned the shorter way');
+  equal([motion_at(series, -5).x, motion_at(series, 9).x], [0, 2], 'at the ends');
+  equal([motion_at(series, 2).sample, motion_at(series, 9).sample], [1, 2], 'the sample before');
+  equal(plays({...series, yaw_rad: []}), false, 'not without headings');
+}
+
+// Two tracks of positions 0, 10 and 20 m, packed: 0, 32767 and 65534.
+function agents_come_and_go(): void {
+  const words = [0, 0, 32767, 0, 65534, 65534];
+  const positions = btoa(String.fromCharCode(...words.flatMap((w) => [w % 256, Math.floor(w / 256)])));
+  const tracks = new Tracks({start_s: 1, period_s: 0.5, tracks: [[2, 2, 0.5], [3, 1, 0.3]], low_m: 0, high_m: 20, positions});
+  const seen = (t: number) => tracks.at(t).map((a) => [a.x, a.y, a.vx, a.radius]);
+  equal(seen(1.9), [], 'not yet');
+  equal(seen(2.25), [[5, 0, 20, 0.5]], 'between two positions');
+  equal(seen(2.5), [[10, 0, 20, 0.5], [20, 20, 0, 0.3]], 'one of a single position');
+  equal(seen(2.6), [], 'gone');
+}
+
+function scenes_know_how_long_they_last(): void {
+  const mark = (t_s: number) => ({kind: 'contact', type: 'Point' as const, coordinates: [0, 0] as [number, number], t_s});
+  const vehicle = (series: Series) => ({name: '', series, stops: []});
+  const later = {...drive(), t_s: [1, 2, 9]};
+  const scene: Scene = {map: {features: [mark(7), {...mark(1), t_s: undefined}, mark(3)]}, vehicles: [vehicle(drive()), vehicle(later)]};
+  equal(duration(scene), [0, 9], 'of all');
+  equal(duration({...scene, vehicles: []}), null, 'nothing that plays');
+  equal(events_of(scene).map((e) => e.t_s), [3, 7], 'in order');
+  equal(new Link(scene).current.time, 0, 'from its beginning');
+  equal([20, 120, 1e6].map(first_rate), [1, 2, 300], 'rates');
+  equal([7.46, 67.5, 3723.04].map(clock), ['0:07.5', '1:07.5', '1:02:03.0'], 'clock');
+}
+
 function a_leg_picked_twice_is_let_go(): void {
-  const link = new Link();
+  const link = new Link({map: {features: []}, vehicles: []});
   link.toggle_leg({vehicle: 1, leg: 4});
   link.toggle_leg({vehicle: 0, leg: 4});
   equal(link.current.leg, {vehicle: 0, leg: 4}, 'the same leg of another vehicle');
@@ -133,6 +177,7 @@ function ground_and_screen_agree(): void {
 
 for (const test of [numbers_are_written_for_people, rows_sort, lines_keep_their_peaks, ramps_run_one_way,
                     errors_find_their_colour, relief_is_lit_from_the_north_west, contours_lie_at_their_level,
-                    vehicles_are_told_apart, a_leg_picked_twice_is_let_go, ground_and_screen_agree]) {
+                    vehicles_are_told_apart, vehicles_move_between_samples, agents_come_and_go,
+                    scenes_know_how_long_they_last, a_leg_picked_twice_is_let_go, ground_and_screen_agree]) {
   test();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/acfr_study.hpp"
 
-#include <map>
-#include <mutex>
+#include <algorithm>
+#include <functional>
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include "core/config/yaml.hpp"
 #include "sim/lab/acfr/tables.hpp"
 #include "sim/lab/episode_row.hpp"
+#include "sim/lab/film.hpp"
 #include "sim/lab/parallel.hpp"
 #include "sim/lab/statistics.hpp"
 
@@ -107,9 +108,8 @@ class Tours {
   std::vector<AcfrTour> all_;
 };
 
-Episode drive(const AcfrStudyConfig& config, const PredictorFactory& predictor, const Cell& cell,
-              const AcfrTour& tour, int run) {
-  const ThreadClock clock;
+AcfrOutcome drive(const AcfrStudyConfig& config, const PredictorFactory& predictor,
+                  const Cell& cell, const AcfrTour& tour, int run, const Clock* clock, Film* film) {
   AcfrDrive episode;
   episode.tour = &tour;
   episode.world = &config.world;
@@ -118,10 +118,13 @@ Episode drive(const AcfrStudyConfig& config, const PredictorFactory& predictor, 
   episode.accuracy_m = cell.accuracy_m;
   episode.budget.iterations = config.iterations_count;
   episode.seed = seed_of(config, run);
-  episode.clock = &clock;
+  episode.clock = clock;
+  episode.film = film;
   const auto planner = make_local_planner(cell.planner, config.local, config.vehicle, predictor);
-  AcfrOutcome outcome = drive_acfr(episode, *planner);
+  return drive_acfr(episode, *planner);
+}
 
+Episode rows_of(AcfrOutcome outcome) {
   Episode result;
   const auto add = [&](LogRow row) { result.rows.push_back(to_row(row)); };
   const auto flag = [](bool value) { return value ? 1.0 : 0.0; };
@@ -135,6 +138,46 @@ Episode drive(const AcfrStudyConfig& config, const PredictorFactory& predictor, 
        outcome.standing_s, outcome.longest_stand_s});
   result.plan_ms = std::move(outcome.plan_ms);
   return result;
+}
+
+bool of_visit(const LogRow& row) { return static_cast<int>(row.kind_count) == kVisit; }
+
+// Whether a row of an episode is so.
+FilmReason when(std::string what, const std::function<bool(const LogRow&)>& so) {
+  return {std::move(what), [so](const Episode& episode) {
+            return std::any_of(episode.rows.begin(), episode.rows.end(),
+                               [&](const auto& values) { return so(from_row<LogRow>(values)); });
+          }};
+}
+
+std::vector<Film> films_of(const AcfrStudyConfig& config, const PredictorFactory& predictor,
+                           const std::vector<Cell>& cells, const Tours& tours,
+                           const std::vector<std::vector<Episode>>& episodes, const StudyRun& run) {
+  const std::vector<FilmReason> reasons = {
+      when("a waypoint was given up",
+           [](const LogRow& r) { return of_visit(r) && r.reached_count == 0.0; }),
+      when("a contact by the robot's doing",
+           [](const LogRow& r) { return r.robot_contact_count > 0.0; }),
+      when("a waypoint took longer than the shorter timeout",
+           [limit = config.short_timeout_s](const LogRow& r) {
+             return of_visit(r) && r.time_s > limit;
+           }),
+      when("a near-collision by the robot's doing",
+           [](const LogRow& r) { return r.robot_near_count > 0.0; }),
+      when("a near-collision", [](const LogRow& r) { return r.near_count > 0.0; })};
+  std::vector<std::string> planners;
+  for (const Cell& cell : cells) planners.emplace_back(config::enum_name(cell.planner));
+  const auto chosen = choose_films(episodes, planners, reasons, run.films_count);
+  std::vector<Film> films(chosen.size());
+  parallel_for(static_cast<int>(chosen.size()), run.jobs, [&](int i) {
+    const auto& [key, why] = chosen[static_cast<std::size_t>(i)];
+    const Cell& cell = cells[static_cast<std::size_t>(key.cell)];
+    Film& film = films[static_cast<std::size_t>(i)];
+    film.name = fmt::format("{}, iteration {}", cell.name(), key.run + 1);
+    film.note = why;
+    drive(config, predictor, cell, tours.of(key.run), key.run, nullptr, &film);
+  });
+  return films;
 }
 
 // Metrics of a cell from its rows.
@@ -254,11 +297,13 @@ Result<StudyResult> run_acfr_study(const AcfrStudyConfig& config, const StudyRun
   const auto tours = Tours::plan(config, run.jobs);
   if (!tours) return tl::unexpected<Error>(tours.error());
   const auto episodes = run_episodes(grid, run, [&](int cell, int number) {
-    return drive(config, *predictor, cells[static_cast<std::size_t>(cell)], tours->of(number),
-                 number);
+    const ThreadClock clock;
+    return rows_of(drive(config, *predictor, cells[static_cast<std::size_t>(cell)],
+                         tours->of(number), number, &clock, nullptr));
   });
   if (!episodes) return tl::unexpected<Error>(episodes.error());
   StudyResult result = result_of(config, cells, *episodes);
+  result.films = films_of(config, *predictor, cells, *tours, *episodes, run);
   if (!run.out.empty()) result.files = episode_files();
   return result;
 }

@@ -5,11 +5,14 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "core/base/clock.hpp"
 #include "core/config/yaml.hpp"
 #include "sim/lab/crowd/episode.hpp"
 #include "sim/lab/crowd/tables.hpp"
 #include "sim/lab/episode_row.hpp"
+#include "sim/lab/film.hpp"
 #include "sim/lab/statistics.hpp"
 
 namespace headland {
@@ -22,10 +25,10 @@ struct Cell {
   std::optional<LocalPlannerKind> planner;
   bool visible;
 
-  std::string name() const {
-    return std::string(planner ? config::enum_name(*planner) : kHolonomicOrca) +
-           (visible ? "/visible" : "/invisible");
+  std::string planner_name() const {
+    return std::string(planner ? config::enum_name(*planner) : kHolonomicOrca);
   }
+  std::string name() const { return planner_name() + (visible ? "/visible" : "/invisible"); }
 };
 
 std::vector<Cell> cells_of(const CrowdStudyConfig& config) {
@@ -49,17 +52,45 @@ std::unique_ptr<EpisodeRobot> robot_of(const CrowdStudyConfig& config,
 }
 
 Episode drive(const CrowdStudyConfig& config, const PredictorFactory& predictor, const Cell& cell,
-              int run) {
+              int run, Film* film = nullptr) {
   const CrowdScenario scenario = crowd_scenario(static_cast<std::uint64_t>(config.seed), run);
   const auto robot = robot_of(config, predictor, cell, scenario.robot);
   Episode episode;
   const CrowdOutcome outcome =
-      run_crowd_episode(scenario, cell.visible, *robot, ThreadClock(), episode.plan_ms);
+      run_crowd_episode(scenario, cell.visible, *robot, ThreadClock(), episode.plan_ms, film);
   episode.rows.push_back(to_row(outcome));
   return episode;
 }
 
 double timeout(const CrowdOutcome& o) { return 1.0 - o.success_count - o.collision_count; }
+
+FilmReason when(std::string what, const std::function<bool(const CrowdOutcome&)>& so) {
+  return {std::move(what), [so](const Episode& episode) {
+            return so(from_row<CrowdOutcome>(episode.rows.front()));
+          }};
+}
+
+std::vector<Film> films_of(const CrowdStudyConfig& config, const PredictorFactory& predictor,
+                           const std::vector<Cell>& cells,
+                           const std::vector<std::vector<Episode>>& episodes, int count) {
+  const std::vector<FilmReason> reasons = {
+      when("a collision by the robot's doing",
+           [](const CrowdOutcome& o) { return o.fault_count > 0.0; }),
+      when("a collision", [](const CrowdOutcome& o) { return o.collision_count > 0.0; }),
+      when("out of time", [](const CrowdOutcome& o) { return timeout(o) > 0.0; }),
+      when("a near miss", [](const CrowdOutcome& o) { return o.near_count > 0.0; })};
+  std::vector<std::string> planners;
+  for (const Cell& cell : cells) planners.push_back(cell.planner_name());
+  std::vector<Film> films;
+  for (const auto& [key, why] : choose_films(episodes, planners, reasons, count)) {
+    const Cell& cell = cells[static_cast<std::size_t>(key.cell)];
+    Film& film = films.emplace_back();
+    film.name = fmt::format("{}, scenario {}", cell.name(), key.run + 1);
+    film.note = why;
+    drive(config, predictor, cell, key.run, &film);
+  }
+  return films;
+}
 
 class Summary {
  public:
@@ -166,6 +197,7 @@ Result<StudyResult> run_crowd_study(const CrowdStudyConfig& config, const StudyR
   });
   if (!episodes) return tl::unexpected<Error>(episodes.error());
   StudyResult result = result_of(config, cells, *episodes);
+  result.films = films_of(config, *predictor, cells, *episodes, run.films_count);
   if (!run.out.empty()) result.files = episode_files();
   return result;
 }

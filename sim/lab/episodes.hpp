@@ -34,6 +34,7 @@ struct StudyRun {
   std::function<void(double)> progress{};  ///< gets the share that is done; one call at a time
   std::function<bool()> stopped{};         ///< whether no more episodes shall begin
   std::filesystem::path folder{};          ///< where relative files of the configuration begin
+  int films_count = 0;                     ///< of its episodes, to be looked at; about so many
 };
 
 /// Runs `work` for each cell and run, `run.jobs` at once (it must be safe for that, and depend on

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "sim/lab/film.hpp"
+
 namespace headland {
 
 /// What is known of one metric of one cell. A metric that is a plain number has only its mean.
@@ -64,6 +66,7 @@ struct StudyResult {
   std::vector<StudyCell> cells{};
   std::vector<Plot> plots{};
   std::vector<StudyTable> tables{};
+  std::vector<Film> films{};         ///< episodes to be looked at
   std::vector<std::string> files{};  ///< names of what it wrote into the output folder itself
 
   /// The cell of that name, or null.

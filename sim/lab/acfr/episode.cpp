@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "core/base/random.hpp"
 
 namespace headland {
@@ -16,19 +18,12 @@ constexpr double kFree = 3.0;          // around the robot no agent starts [m]
 constexpr double kStill = 0.05;        // slower, the robot is not at fault [m/s]
 constexpr double kStanding = 0.01;     // [m/s]
 constexpr double kSamplePeriod = 5.0;  // of the displacement [s]
+constexpr double kFilmed = 12.0;       // around the robot, agents are filmed [m]
+constexpr double kFilmedPath = 0.5;    // between points of the filmed path [m]
 
-// Distance from an agent's disc to the robot's outline [m]; negative: they overlap.
-double outline_gap(const Vehicle& vehicle, const Pose2& pose, const Point2& agent, double radius) {
-  const Point2 p = inverse(pose) * agent;
-  const Footprint& f = vehicle.footprint;
-  const double dx = std::max({p.x() - f.front_m, -f.rear_m - p.x(), 0.0});
-  const double dy = std::max(std::abs(p.y()) - 0.5 * f.width_m, 0.0);
-  return std::hypot(dx, dy) - radius;
-}
-
-class Episode {
+class Drive {
  public:
-  Episode(const AcfrDrive& drive, LocalPlanner& planner)
+  Drive(const AcfrDrive& drive, LocalPlanner& planner)
       : drive_(drive),
         tour_(*drive.tour),
         world_(*drive.world),
@@ -40,6 +35,7 @@ class Episode {
                    Region({{{low_, {high_.x(), low_.y()}, high_, {low_.x(), high_.y()}}, {}}}))),
         noise_(drive.seed, "study/acfr/noise") {
     robot_.pose = tour_.path.start_pose();
+    if (drive_.film != nullptr) begin_film();
   }
 
   AcfrOutcome run() {
@@ -49,7 +45,8 @@ class Episode {
       const double time = static_cast<double>(tick) * world_.step_s;
       if (tick % period == 0) decide(time);
       move(time);
-      count_interactions();
+      count_interactions(time + world_.step_s);
+      if (drive_.film != nullptr) film(time + world_.step_s);
       sample(time + world_.step_s);
       check_place(time + world_.step_s);
     }
@@ -146,14 +143,9 @@ class Episode {
     stand_s_ = std::abs(robot_.speed) < kStanding ? stand_s_ + world_.step_s : 0.0;
     if (stand_s_ > 0.0) outcome_.standing_s += world_.step_s;
     outcome_.longest_stand_s = std::max(outcome_.longest_stand_s, stand_s_);
-    if (drive_.keep_frames) {
-      AcfrFrame frame{time + world_.step_s, robot_, static_cast<int>(place_), plan_.status, {}};
-      for (const Agent& agent : crowd_.agents()) frame.agents.push_back(agent.position);
-      outcome_.frames.push_back(std::move(frame));
-    }
   }
 
-  void count_interactions() {
+  void count_interactions(double time) {
     const Point2 here = centre();
     const Point2 velocity = robot_.speed * robot_.pose.heading();
     for (const Agent& agent : crowd_.agents()) {
@@ -175,21 +167,61 @@ class Episode {
       if (distance < world_.near_m && !meeting.near) {
         meeting.near = true;
         meeting.robot_fault = by_robot > kStill && by_robot >= by_agent;
+        tell(time, agent.position, meeting.robot_fault ? "near_robot" : "near_agent",
+             "near-collision");
       }
-      if (outline_gap(drive_.vehicle, robot_.pose, agent.position, world_.agent_radius_m) < 0.0) {
+      if (outline_gap(drive_.vehicle.footprint, robot_.pose, agent.position,
+                      world_.agent_radius_m) < 0.0) {
+        if (!meeting.contact) tell(time, agent.position, "contact", "contact");
         meeting.contact = true;
         meeting.robot_contact = meeting.robot_contact || by_robot > kStill;
       }
     }
   }
 
+  Projection on_path() const {
+    return tour_.path.project(robot_.pose.position(), std::max(0.0, progress_ - 3.0 * kAhead),
+                              progress_ + 3.0 * kAhead);
+  }
+
   void sample(double time) {
     if (time < next_sample_) return;
     next_sample_ += kSamplePeriod;
-    const double from = std::max(0.0, progress_ - 3.0 * kAhead);
-    const double off =
-        tour_.path.project(robot_.pose.position(), from, progress_ + 3.0 * kAhead).distance;
-    outcome_.displacements.emplace_back(time, off);
+    outcome_.displacements.emplace_back(time, on_path().distance);
+  }
+
+  void begin_film() {
+    Film& film = *drive_.film;
+    film.outline = drive_.vehicle.footprint;
+    for (const PathSample& sample : tour_.path.sample(kFilmedPath)) {
+      film.path.push_back(sample.pose.position());
+    }
+    for (std::size_t i = 0; i < tour_.places.size(); ++i) {
+      const bool station = i + 1 == tour_.places.size();
+      film.places.push_back({station ? "station" : fmt::format("waypoint {}", i + 1),
+                             tour_.places[i], drive_.accuracy_m});
+    }
+  }
+
+  void film(double time) {
+    FilmFrame frame{time, robot_.pose, robot_.speed, robot_.steering, outcome_.length_m};
+    const Projection at = on_path();
+    frame.off_m = std::copysign(at.distance, at.lateral_error);
+    frame.place = static_cast<int>(place_);
+    frame.clearance_m = kFilmed;
+    for (Agent agent : crowd_.agents()) {
+      if ((agent.position - centre()).norm() > kFilmed) continue;
+      agent.radius_m = world_.agent_radius_m;
+      frame.clearance_m = std::min(
+          frame.clearance_m,
+          outline_gap(drive_.vehicle.footprint, robot_.pose, agent.position, agent.radius_m));
+      frame.agents.push_back(agent);
+    }
+    drive_.film->frames.push_back(std::move(frame));
+  }
+
+  void tell(double time, const Point2& where, const char* kind, std::string text) {
+    if (drive_.film != nullptr) drive_.film->events.push_back({time, where, kind, std::move(text)});
   }
 
   void check_place(double time) {
@@ -198,6 +230,7 @@ class Episode {
     const bool reached = off <= drive_.accuracy_m;
     if (!reached && taken < world_.timeout_s) return;
     outcome_.visits.push_back({assigned_m_, taken, reached});
+    if (!reached) tell(time, tour_.places[place_], "given_up", "given up");
     outcome_.duration_s = time;
     ++place_;
     next_place(time);
@@ -227,7 +260,7 @@ class Episode {
 }  // namespace
 
 AcfrOutcome drive_acfr(const AcfrDrive& drive, LocalPlanner& planner) {
-  return Episode(drive, planner).run();
+  return Drive(drive, planner).run();
 }
 
 }  // namespace headland

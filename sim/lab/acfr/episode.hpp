@@ -11,6 +11,7 @@
 #include "local_planner/local_planner.hpp"
 #include "sim/crowd/crowd.hpp"
 #include "sim/lab/acfr/site.hpp"
+#include "sim/lab/film.hpp"
 
 namespace headland {
 
@@ -84,15 +85,6 @@ struct AcfrInteraction {
   bool robot_contact = false;  ///< ... and the robot moved towards the agent by more than 0.05 m/s
 };
 
-/// What was where at a moment, for pictures.
-struct AcfrFrame {
-  double time_s = 0.0;
-  VehicleState robot;
-  int place = 0;
-  LocalStatus status = LocalStatus::kPlanned;
-  std::vector<Point2> agents;
-};
-
 /// An iteration of the study, driven.
 struct AcfrOutcome {
   std::vector<AcfrVisit> visits;
@@ -104,7 +96,6 @@ struct AcfrOutcome {
   double length_m = 0.0;
   double standing_s = 0.0;  ///< slower than 0.01 m/s
   double longest_stand_s = 0.0;
-  std::vector<AcfrFrame> frames;  ///< if asked for
 };
 
 struct AcfrDrive {
@@ -116,7 +107,7 @@ struct AcfrDrive {
   PlanBudget budget;
   std::uint64_t seed = 1;
   const Clock* clock = nullptr;  ///< for plan_ms only
-  bool keep_frames = false;
+  Film* film = nullptr;          ///< gets what was where, if there is one
 };
 
 /// Drives one iteration among agents. The same seed and tour give the same agents, whoever plans.

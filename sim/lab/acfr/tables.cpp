@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/acfr/tables.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@ namespace headland {
 namespace {
 
 constexpr std::array<std::string_view, 2> kDensities{"dense", "sparse"};
+constexpr const char* kNotRun = "not run";
 constexpr std::array<std::string_view, 3> kAccuracies{"5m", "2m", "1m"};
 
 // (003) Tables I to III.
@@ -48,12 +50,18 @@ std::string name(std::string_view planner, std::string_view density, std::string
   return fmt::format("{}/{}/{}", planner, density, accuracy);
 }
 
-// The planners of the cells, in their order.
+// The planners of the cells, in their order, and those of the paper that were not run.
 std::vector<std::string> planners_of(const StudyResult& result) {
   std::vector<std::string> planners;
+  const auto has = [&](const std::string& planner) {
+    return std::find(planners.begin(), planners.end(), planner) != planners.end();
+  };
   for (const StudyCell& cell : result.cells) {
     const std::string planner = cell.name.substr(0, cell.name.find('/'));
-    if (planners.empty() || planners.back() != planner) planners.push_back(planner);
+    if (!has(planner)) planners.push_back(planner);
+  }
+  for (const Published& p : kPublished) {
+    if (!has(std::string(p.planner))) planners.emplace_back(p.planner);
   }
   return planners;
 }
@@ -63,8 +71,9 @@ std::string beside(const std::string& ours, const Published* seed, double theirs
 }
 
 std::string share(const StudyCell* cell, const char* metric) {
-  const Statistic* s = cell == nullptr ? nullptr : cell->find(metric);
-  if (s == nullptr) return "-";
+  if (cell == nullptr) return kNotRun;
+  const Statistic* s = cell->find(metric);
+  if (s == nullptr) return "none";
   return fmt::format("{:.1f} [{:.1f}, {:.1f}]", 100.0 * s->mean,
                      100.0 * s->ci_low.value_or(s->mean), 100.0 * s->ci_high.value_or(s->mean));
 }
@@ -113,25 +122,26 @@ StudyTable by_density(const StudyResult& result, StudyTable table, const Columns
   return table;
 }
 
-std::string number(const std::optional<double>& value) {
-  return value ? fmt::format("{:.2f}", *value) : "-";
+std::string number(const Statistic* statistic, std::optional<double> Statistic::*value) {
+  if (statistic == nullptr) return kNotRun;
+  return statistic->*value ? fmt::format("{:.2f}", *(statistic->*value)) : "none";
 }
 
 StudyTable displacements(const StudyResult& result) {
-  return by_density(
-      result,
-      {"Table II: displacement from the path of least energy [m] (seed 003)",
-       {"planner", "dense: median", "std", "p95", "sparse: median", "std", "p95"},
-       {}},
-      [](const StudyCell* cell, const Published* seed, std::size_t d,
-         std::vector<std::string>& row) {
-        const Statistic* s = cell == nullptr ? nullptr : cell->find("displacement_m");
-        if (s == nullptr) return row.insert(row.end(), {"-", "-", "-"}), void();
-        const std::size_t at = 2 * d;
-        row.push_back(beside(number(s->median), seed, seed ? seed->displacement[at] : 0.0, 2));
-        row.push_back(beside(number(s->std), seed, seed ? seed->displacement[at + 1] : 0.0, 2));
-        row.push_back(number(s->p95));
-      });
+  return by_density(result,
+                    {"Table II: displacement from the path of least energy [m] (seed 003)",
+                     {"planner", "dense: median", "std", "p95", "sparse: median", "std", "p95"},
+                     {}},
+                    [](const StudyCell* cell, const Published* seed, std::size_t d,
+                       std::vector<std::string>& row) {
+                      const Statistic* s = cell == nullptr ? nullptr : cell->find("displacement_m");
+                      const std::size_t at = 2 * d;
+                      row.push_back(beside(number(s, &Statistic::median), seed,
+                                           seed ? seed->displacement[at] : 0.0, 2));
+                      row.push_back(beside(number(s, &Statistic::std), seed,
+                                           seed ? seed->displacement[at + 1] : 0.0, 2));
+                      row.push_back(number(s, &Statistic::p95));
+                    });
 }
 
 StudyTable distances(const StudyResult& result) {
@@ -144,11 +154,12 @@ StudyTable distances(const StudyResult& result) {
       [](const StudyCell* cell, const Published* seed, std::size_t d,
          std::vector<std::string>& row) {
         const Statistic* s = cell == nullptr ? nullptr : cell->find("least_m");
-        if (s == nullptr) return row.insert(row.end(), {"-", "-", "-", "-"}), void();
         const std::size_t at = 3 * d;
         row.push_back(beside(share(cell, "near_collision"), seed, seed ? seed->least[at] : 0.0, 2));
-        row.push_back(beside(number(s->median), seed, seed ? seed->least[at + 1] : 0.0, 2));
-        row.push_back(beside(number(s->std), seed, seed ? seed->least[at + 2] : 0.0, 2));
+        row.push_back(
+            beside(number(s, &Statistic::median), seed, seed ? seed->least[at + 1] : 0.0, 2));
+        row.push_back(
+            beside(number(s, &Statistic::std), seed, seed ? seed->least[at + 2] : 0.0, 2));
         row.push_back(share(cell, "robot_near"));
       });
 }

@@ -43,12 +43,17 @@ double distance_to_segment(const Point2& a, const Point2& b) {
 
 class Drive {
  public:
-  Drive(const CrowdScenario& scenario, EpisodeRobot& robot)
-      : robot_(robot), crowd_(crowd_of(scenario)) {
+  Drive(const CrowdScenario& scenario, EpisodeRobot& robot, Film* film)
+      : robot_(robot), way_(scenario.robot), crowd_(crowd_of(scenario)), film_(film) {
     outcome_.people_count = static_cast<double>(scenario.people.size());
     outcome_.gap_m = std::numeric_limits<double>::max();
     look();
     before_ = seen_;
+    if (film_ == nullptr) return;
+    film_->outline = robot.outline();
+    film_->path = {way_.start, way_.goal};
+    film_->places = {{"goal", way_.goal, kGoal}};
+    shoot();
   }
 
   const std::vector<Agent>& seen() const { return seen_; }
@@ -87,6 +92,8 @@ class Drive {
     time_ += kStep;
     outcome_.time_s = time_;
     outcome_.gap_m = std::min(outcome_.gap_m, gap);
+    tell(gap);
+    shoot();
     return gap;
   }
 
@@ -97,6 +104,32 @@ class Drive {
   void count_near_miss() { outcome_.near_count += 1.0; }
 
  private:
+  // What is where, for the film. The clearance is that of the protocol's discs.
+  void shoot() {
+    if (film_ == nullptr) return;
+    const Pose2 at = robot_.pose();
+    FilmFrame frame{time_, at, robot_.velocity().dot(at.heading()), 0.0, outcome_.length_m};
+    const Point2 along = (way_.goal - way_.start).normalized();
+    frame.off_m = Point2(-along.y(), along.x()).dot(at.position() - way_.start);
+    frame.clearance_m = std::numeric_limits<double>::max();
+    for (const Agent& person : seen_) {
+      const double distance = (person.position - at.position()).norm();
+      frame.clearance_m = std::min(frame.clearance_m, distance - 2.0 * kRadius);
+    }
+    frame.agents = seen_;
+    film_->frames.push_back(std::move(frame));
+  }
+
+  void tell(double gap) {
+    const bool near = gap < kNear;
+    if (film_ != nullptr && gap < 0.0) {
+      film_->events.push_back({time_, robot_.position(), "contact", "collision"});
+    } else if (film_ != nullptr && near && !near_) {
+      film_->events.push_back({time_, robot_.position(), "near_miss", "near miss"});
+    }
+    near_ = near;
+  }
+
   double move_robot(int substep) {
     constexpr double kDt = kStep / kSubsteps;
     const Point2 from = robot_.position();
@@ -120,7 +153,10 @@ class Drive {
   }
 
   EpisodeRobot& robot_;
+  CrowdWalk way_;
   Crowd crowd_;
+  Film* film_;
+  bool near_ = false;  // in the step before
   std::vector<Agent> seen_;
   std::vector<Agent> before_;  // a step ago
   CrowdOutcome outcome_;
@@ -130,8 +166,8 @@ class Drive {
 }  // namespace
 
 CrowdOutcome run_crowd_episode(const CrowdScenario& scenario, bool visible, EpisodeRobot& robot,
-                               const Clock& clock, std::vector<double>& plan_ms) {
-  Drive drive(scenario, robot);
+                               const Clock& clock, std::vector<double>& plan_ms, Film* film) {
+  Drive drive(scenario, robot, film);
   while (drive.time() < kTimeout) {
     drive.count_disturbances();
     const double begin = clock.now();

@@ -7,6 +7,7 @@
 #include "core/base/clock.hpp"
 #include "sim/lab/crowd/robot.hpp"
 #include "sim/lab/crowd/scenario.hpp"
+#include "sim/lab/film.hpp"
 
 namespace headland {
 
@@ -45,8 +46,10 @@ struct CrowdOutcome {
 
 /// Drives the scenario until goal, collision or timeout; people see the robot if it is `visible`.
 /// Distances are the least of the way between the steps, not only at their ends. Deterministic if
-/// the robot is; `plan_ms` gets the time of each decision on `clock`.
+/// the robot is; `plan_ms` gets the time of each decision on `clock`, `film`, if there is one, what
+/// was where.
 CrowdOutcome run_crowd_episode(const CrowdScenario& scenario, bool visible, EpisodeRobot& robot,
-                               const Clock& clock, std::vector<double>& plan_ms);
+                               const Clock& clock, std::vector<double>& plan_ms,
+                               Film* film = nullptr);
 
 }  // namespace headland

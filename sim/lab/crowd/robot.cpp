@@ -9,6 +9,13 @@ namespace headland {
 
 using namespace crowd_protocol;
 
+Pose2 HolonomicOrcaRobot::pose() const {
+  const Point2 ahead = velocity_.norm() > 0.0 ? velocity_ : Point2(goal_ - position_);
+  return {position_.x(), position_.y(), std::atan2(ahead.y(), ahead.x())};
+}
+
+Footprint HolonomicOrcaRobot::outline() const { return {kRadius, kRadius, 2.0 * kRadius}; }
+
 void HolonomicOrcaRobot::decide(double, std::span<const Agent> agents) {
   lines_.clear();
   for (const Agent& agent : agents) {

@@ -16,8 +16,10 @@ namespace headland {
 class EpisodeRobot {
  public:
   virtual ~EpisodeRobot() = default;
-  virtual Point2 position() const = 0;  ///< [m]
+  virtual Pose2 pose() const = 0;       ///< of its base
   virtual Point2 velocity() const = 0;  ///< [m/s]
+  virtual Footprint outline() const = 0;
+  Point2 position() const { return pose().position(); }  ///< [m]
   /// Decides by what it sees at `time_s`.
   virtual void decide(double time_s, std::span<const Agent> agents) = 0;
   /// Drives on as decided, from `time_s` for `dt` [s].
@@ -30,8 +32,10 @@ class HolonomicOrcaRobot : public EpisodeRobot {
  public:
   HolonomicOrcaRobot(const Point2& start, const Point2& goal) : position_(start), goal_(goal) {}
 
-  Point2 position() const override { return position_; }
+  /// Faces where it goes.
+  Pose2 pose() const override;
   Point2 velocity() const override { return velocity_; }
+  Footprint outline() const override;
   void decide(double time_s, std::span<const Agent> agents) override;
   void move(double time_s, double dt) override;
 
@@ -50,8 +54,9 @@ class PlannedRobot : public EpisodeRobot {
   PlannedRobot(const Vehicle& vehicle, std::unique_ptr<LocalPlanner> planner,
                const PlanBudget& budget, const Point2& start, const Point2& goal);
 
-  Point2 position() const override { return {state_.pose.x, state_.pose.y}; }
+  Pose2 pose() const override { return state_.pose; }
   Point2 velocity() const override;
+  Footprint outline() const override { return vehicle_.footprint; }
   void decide(double time_s, std::span<const Agent> agents) override;
   void move(double time_s, double dt) override;
 

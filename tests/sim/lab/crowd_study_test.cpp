@@ -56,6 +56,25 @@ TEST(CrowdStudy, HasACellForEachPlannerWithPeopleWhoSeeAndWhoDoNot) {
   EXPECT_TRUE(result->files.empty());
 }
 
+TEST(CrowdStudy, FilmsEpisodesOfEachPlanner) {
+  StudyRun run;
+  run.films_count = 3;
+  const auto result = run_crowd_study(small(), run);
+  ASSERT_TRUE(result);
+  ASSERT_EQ(result->films.size(), 3U);
+  EXPECT_TRUE(result->films[0].name.starts_with("mcts/"));
+  EXPECT_TRUE(result->films[2].name.starts_with("orca_holonomic/"));
+  for (const Film& film : result->films) {
+    SCOPED_TRACE(film.name);
+    ASSERT_GT(film.frames.size(), 10U);
+    EXPECT_EQ(film.frames.front().time_s, 0.0);
+    EXPECT_NEAR(film.frames[1].time_s, 0.25, 1e-12);
+    EXPECT_EQ((film.frames.front().robot.position() - film.path.front()).norm(), 0.0);
+    EXPECT_GE(film.frames.front().agents.size(), 2U);
+    EXPECT_FALSE(film.note.empty());
+  }
+}
+
 TEST(CrowdStudy, WritesTheSameEpisodesWhateverTheJobs) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "headland_crowd_study";
   std::filesystem::remove_all(folder);

@@ -11,8 +11,8 @@ namespace headland {
 namespace {
 
 AcfrStudyConfig shipped() {
-  const auto read = config::load<AcfrStudyConfig>(std::string(HEADLAND_SOURCE_DIR) +
-                                                  "/config/studies/acfr.yaml");
+  const auto read =
+      config::load<AcfrStudyConfig>(std::string(HEADLAND_SOURCE_DIR) + "/config/studies/acfr.yaml");
   EXPECT_TRUE(read);
   AcfrStudyConfig config = *read;
   config.planners = {LocalPlannerKind::kMcts};
@@ -49,14 +49,24 @@ TEST(AcfrStudy, TheSameSeedGivesTheSameBytesWhateverTheJobs) {
   config.dense_m2 = 30.0;
   config.iterations_count = 100;
   std::string before;
+  double driven_m = 0.0;
   for (const int jobs : {1, 2}) {
     const auto out = std::filesystem::path(::testing::TempDir()) / ("acfr_" + std::to_string(jobs));
     std::filesystem::remove_all(out);
     std::filesystem::create_directories(out);
-    ASSERT_TRUE(run_acfr_study(config, {jobs, out, {}, {}}));
+    const auto result = run_acfr_study(config, {jobs, out, {}, {}, {}, 2});
+    ASSERT_TRUE(result);
+    ASSERT_FALSE(result->films.empty());
+    const double last_m = result->films.front().frames.back().driven_m;
+    if (driven_m > 0.0) {
+      EXPECT_EQ(last_m, driven_m);
+    }
+    driven_m = last_m;
     const std::string now = text_of(out / "episodes.csv");
     EXPECT_GT(now.size(), 1000U);
-    if (!before.empty()) EXPECT_EQ(now, before);
+    if (!before.empty()) {
+      EXPECT_EQ(now, before);
+    }
     before = now;
   }
 }

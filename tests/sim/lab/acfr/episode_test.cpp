@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sim/lab/acfr/episode.hpp"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "local_planner/mcts/mcts_planner.hpp"
@@ -32,13 +34,14 @@ AcfrTour two_places() {
 }
 
 AcfrOutcome drive(const AcfrTour& tour, AcfrWorldConfig world, int iterations = 150,
-                  double density = 10.0) {
+                  double density = 10.0, Film* film = nullptr) {
   AcfrDrive episode;
   episode.tour = &tour;
   episode.world = &world;
   episode.vehicle = robot();
   episode.density_m2 = density;
   episode.budget.iterations = iterations;
+  episode.film = film;
   MctsPlanner planner(episode.vehicle, {}, std::make_unique<OrcaPredictor>());
   return drive_acfr(episode, planner);
 }
@@ -63,6 +66,33 @@ TEST(AcfrEpisode, IsTheSameEachTime) {
     EXPECT_EQ(once.interactions[i].least_m, again.interactions[i].least_m);
   }
   EXPECT_EQ(once.length_m, again.length_m);
+}
+
+TEST(AcfrEpisode, IsTheSameIfItIsFilmedAndTheFilmShowsIt) {
+  Film film;
+  const AcfrOutcome filmed = drive(two_places(), {}, 150, 10.0, &film);
+  EXPECT_EQ(filmed.length_m, drive(two_places(), {}).length_m);
+  ASSERT_GT(film.frames.size(), 100U);
+  EXPECT_NEAR(film.frames.back().time_s, filmed.duration_s, 1e-9);
+  EXPECT_EQ(film.frames.back().driven_m, filmed.length_m);
+  EXPECT_EQ(film.places.size(), 2U);
+  EXPECT_NEAR((film.frames.back().robot.position() - film.places.back().position).norm(), 1.0, 0.2);
+  double least = 1e9;
+  double least_met = 1e9;
+  for (const FilmFrame& frame : film.frames) {
+    EXPECT_FALSE(frame.agents.empty());
+    const Point2 centre = frame.robot.position() + 0.6 * frame.robot.heading();
+    for (const Agent& a : frame.agents) least = std::min(least, (a.position - centre).norm());
+  }
+  int near = 0;
+  for (const AcfrInteraction& i : filmed.interactions) {
+    least_met = std::min(least_met, i.least_m);
+    near += i.near ? 1 : 0;
+  }
+  EXPECT_NEAR(least, least_met, 1e-12);
+  EXPECT_EQ(std::count_if(film.events.begin(), film.events.end(),
+                          [](const FilmEvent& e) { return e.kind.starts_with("near_"); }),
+            near);
 }
 
 TEST(AcfrEpisode, GivesUpAPlaceAfterItsTimeout) {

@@ -10,7 +10,8 @@ namespace {
 class StraightRobot : public EpisodeRobot {
  public:
   StraightRobot(const Point2& start, const Point2& velocity) : at_(start), velocity_(velocity) {}
-  Point2 position() const override { return at_; }
+  Pose2 pose() const override { return {at_.x(), at_.y(), 0.0}; }
+  Footprint outline() const override { return {0.3, 0.3, 0.6}; }
   Point2 velocity() const override { return velocity_; }
   void decide(double, std::span<const Agent> agents) override {
     for (const Agent& agent : agents) EXPECT_EQ(agent.radius_m, 0.3);
