@@ -74,7 +74,9 @@ int run(int argc, char** argv) {
     code = headland::apps::run_command(options, realtime);
   });
 
-  auto* study = app.add_subcommand("study", "Run a study: a grid of scenarios, with statistics");
+  auto* study = app.add_subcommand("study",
+                                   "Run a study: a grid of scenarios, with statistics; one of "
+                                   "episodes goes on where it was stopped");
   add_common(study, options, "STUDY", "Study file (YAML)");
   int jobs = 1;
   int max_episodes = 0;
