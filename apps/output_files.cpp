@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/output_files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <string_view>
@@ -10,9 +11,9 @@ namespace headland::apps {
 namespace {
 
 // What any command may write; those of an earlier command in the same directory would mislead.
-constexpr std::array<std::string_view, 11> kOutputs = {
-    "summary.json", "plan.geojson", "metrics.json", "trace.csv",     "run.mcap",    "results.json",
-    "episodes.csv", "report.json",  "report.html",  "solution.json", "solution.sol"};
+constexpr std::array<std::string_view, 12> kOutputs = {
+    "summary.json", "plan.geojson", "metrics.json", "trace.csv",   "run.mcap",      "results.json",
+    "episodes.csv", "times.csv",    "report.json",  "report.html", "solution.json", "solution.sol"};
 
 tl::unexpected<Error> cannot_write(const std::filesystem::path& path, const std::string& why) {
   return fail(ErrorCode::kFileNotWritable, "cannot be written: " + why,
@@ -41,7 +42,8 @@ Result<void> prepare_output(const std::filesystem::path& directory) {
 }
 
 Result<void> write_files(const std::filesystem::path& directory,
-                         const std::map<std::string, std::string>& files) {
+                         const std::map<std::string, std::string>& files,
+                         const std::vector<std::string>& kept) {
   if (auto ready = prepare_output(directory); !ready) return ready;
   std::error_code code;
   for (const auto& [name, content] : files) {
@@ -55,7 +57,9 @@ Result<void> write_files(const std::filesystem::path& directory,
     return cannot_write(directory / name, "no space left, or the file system failed");
   }
   for (const std::string_view name : kOutputs) {
-    if (files.count(std::string(name)) == 0) std::filesystem::remove(directory / name, code);
+    const bool stays = files.contains(std::string(name)) ||
+                       std::find(kept.begin(), kept.end(), name) != kept.end();
+    if (!stays) std::filesystem::remove(directory / name, code);
   }
   for (const auto& [name, content] : files) {
     std::filesystem::rename(directory / (name + ".part"), directory / name, code);

@@ -334,12 +334,13 @@ std::string report_html(std::string_view title, std::string_view json) {
 }
 
 Result<void> write_report(const Report& report, const std::filesystem::path& directory,
-                          std::map<std::string, std::string> files) {
+                          std::map<std::string, std::string> files,
+                          const std::vector<std::string>& kept) {
   const auto json = report_json(report);
   if (!json) return tl::unexpected<Error>(json.error());
   files["report.json"] = *json + "\n";
   files["report.html"] = report_html(report.title, *json);
-  return apps::write_files(directory, files);
+  return apps::write_files(directory, files, kept);
 }
 
 }  // namespace headland

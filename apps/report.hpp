@@ -150,8 +150,10 @@ Result<std::string> report_json(const Report& report);
 std::string report_html(std::string_view title, std::string_view json);
 
 /// Writes report.json and report.html into `directory`, and `files` (name -> content) beside them,
-/// each first under a temporary name (apps/output_files.hpp). Error kFileNotWritable.
+/// each first under a temporary name; `kept` stay as they are (apps/output_files.hpp). Error
+/// kFileNotWritable.
 Result<void> write_report(const Report& report, const std::filesystem::path& directory,
-                          std::map<std::string, std::string> files = {});
+                          std::map<std::string, std::string> files = {},
+                          const std::vector<std::string>& kept = {});
 
 }  // namespace headland

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include "apps/command.hpp"
+#include "apps/interrupt.hpp"
 #include "apps/output_files.hpp"
 #include "apps/report_content.hpp"
 #include "apps/study_output.hpp"
+#include "sim/lab/acfr_study.hpp"
+#include "sim/lab/crowd_study.hpp"
 #include "sim/lab/ebs221_study.hpp"
 #include "sim/lab/energy_study.hpp"
 #include "sim/lab/polito_study.hpp"
@@ -30,7 +33,20 @@ Result<FinishedStudy> run_as(const config::Node& node, int max_episodes,
                                                       config::to_yaml(config))};
 }
 
-Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max_episodes) {
+// A study of episodes keeps them in `out` as it goes; Ctrl-C ends it after those that are running.
+template <class Config, class RunStudy>
+Result<FinishedStudy> run_episodes_as(const config::Node& node, int max_episodes, int jobs,
+                                      const std::string& out, const RunStudy& run_study) {
+  ProgressBar bar("episodes");
+  const InterruptGuard guard;
+  const StudyRun run{jobs, out, [&bar](double share) { bar.update(share); },
+                     InterruptGuard::interrupted};
+  return run_as<Config>(node, max_episodes,
+                        [&](const Config& config) { return run_study(config, run); });
+}
+
+Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max_episodes,
+                                     const std::string& out) {
   const auto study = node.child("study");
   const std::string name = study && study->is_scalar() ? study->scalar() : "";
   if (name == "ebs221") return run_as<Ebs221StudyConfig>(node, max_episodes, run_ebs221_study);
@@ -49,11 +65,17 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
       return run_tracking_study(config, jobs);
     });
   }
+  if (name == "acfr") {
+    return run_episodes_as<AcfrStudyConfig>(node, max_episodes, jobs, out, run_acfr_study);
+  }
+  if (name == "crowd") {
+    return run_episodes_as<CrowdStudyConfig>(node, max_episodes, jobs, out, run_crowd_study);
+  }
   Location where = study ? study->where() : node.where();
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: ebs221, energy, polito, tracking", where);
+              "allowed: acfr, crowd, ebs221, energy, polito, tracking", where);
 }
 
 }  // namespace
@@ -64,13 +86,14 @@ int study_command(const CommonOptions& options, int jobs, int max_episodes) {
   }
   const auto node = load_with_overrides(options);
   if (!node) return report_error(node.error(), options);
-  const auto finished = run_study_file(*node, jobs, max_episodes);
+  const auto finished = run_study_file(*node, jobs, max_episodes, options.out);
   if (!finished) return report_error(finished.error(), options);
 
   const std::string results = results_json(*finished);
-  const auto written =
-      write_report(study_report(*finished), options.out,
-                   {{"results.json", results}, {"episodes.csv", cells_csv(finished->result)}});
+  std::map<std::string, std::string> files = {{"results.json", results}};
+  const std::vector<std::string>& kept = finished->result.files;
+  if (kept.empty()) files["episodes.csv"] = cells_csv(finished->result);
+  const auto written = write_report(study_report(*finished), options.out, files, kept);
   if (!written) return report_error(written.error(), options);
   if (options.json) {
     fmt::print("{}", results);

@@ -29,6 +29,7 @@ struct LocalGoal {
   const Path* path = nullptr;  ///< the global path; null: none, straight to `place`
   double s = 0.0;              ///< progress along it [m]
   Point2 place{0.0, 0.0};      ///< the next waypoint
+  double place_s = 0.0;        ///< where on the path it lies [m]
   double accuracy_m = 1.0;     ///< it is reached within this distance
   double speed_mps = 1.0;      ///< wanted on the way, > 0
 };

@@ -28,6 +28,7 @@ enum class ErrorCode : int {
   kNoRows = 204,
   kTooSteep = 205,
   kTaskDoesNotFit = 206,
+  kStopped = 207,
   // 4xx: control.
   kPathLost = 401,
   kPathTooTight = 402,

@@ -19,6 +19,15 @@ struct Prediction {
   std::vector<Point2> mean{};                 ///< [m, map]: mean[agent * steps + step]
   std::vector<Eigen::Matrix2d> covariance{};  ///< [m2], likewise
 
+  /// Empties it for steps of that length.
+  void begin(double step, int count) {
+    step_s = step;
+    steps = count;
+    ids.clear();
+    radius_m.clear();
+    mean.clear();
+    covariance.clear();
+  }
   int agents() const { return static_cast<int>(ids.size()); }
   std::size_t index(int agent, int step) const {
     return static_cast<std::size_t>(agent * steps + step);

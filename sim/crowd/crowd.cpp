@@ -131,6 +131,10 @@ void Crowd::look(std::span<const CrowdRobot> robots) {
   here_.clear();
   positions_.clear();
   frightful_.clear();
+  here_.reserve(members_.size());
+  positions_.reserve(members_.size());
+  frightful_.reserve(members_.size() + robots.size());
+  threats_.reserve(members_.size() + robots.size());
   for (std::size_t i = 0; i < members_.size(); ++i) {
     const CrowdAgent& agent = members_[i].agent;
     if (!members_[i].here) continue;
@@ -247,6 +251,7 @@ void Crowd::move(Member& member, double dt) {
 
 void Crowd::show() {
   seen_.clear();
+  seen_.reserve(members_.size());
   for (const Member& member : members_) {
     if (!member.here) continue;
     const CrowdAgent& agent = member.agent;

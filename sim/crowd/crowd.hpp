@@ -98,8 +98,9 @@ class Crowd {
   /// and lies on the farm at `T_map_tracks`. Their ids follow on all others. Before the first step.
   void replay(const TrackSet& tracks, const Pose2& T_map_tracks = {}, double begin_s = 0.0);
 
-  /// `dt` [s] on; not finite or not > 0: nothing happens. Does not allocate (but for the rule of
-  /// goals). O(n log n); about 1 us per agent.
+  /// `dt` [s] on; not finite or not > 0: nothing happens. Does not allocate after the first step,
+  /// but for more than 16 robots, more recorded agents than so far, and in the rule of goals. O(n
+  /// log n); about 0.5 us an agent.
   void step(double dt, std::span<const CrowdRobot> robots = {});
   double time_s() const { return time_s_; }
   /// All who are there, as a perfect sensor sees them.

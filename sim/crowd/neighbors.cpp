@@ -34,6 +34,7 @@ void Neighbors::update(std::span<const Point2> points, double range, std::size_t
   }
   nodes_.clear();
   split(0, static_cast<int>(items_.size()));
+  around_.reserve(nodes_.size());
   for (const Node& leaf : nodes_) {
     if (leaf.right > 0) continue;
     double reach2 = 0.0;

@@ -10,7 +10,7 @@
 #include "core/base/random.hpp"
 #include "core/world/ground.hpp"
 #include "global_planner/roadmap/roadmap.hpp"
-#include "global_planner/tour/tour_solver.hpp"
+#include "sim/lab/goal_tour.hpp"
 #include "sim/lab/parallel.hpp"
 #include "sim/lab/statistics.hpp"
 
@@ -73,37 +73,18 @@ class Pasture {
   Result<PricedTour> tour(const Roadmap& roadmap, Objective objective) const {
     const auto graph = roadmap.connect(goals_, objective);
     if (!graph) return tl::unexpected<Error>(graph.error());
-    const auto solution = solve_tour(tour_problem(*graph, objective));
-    if (!solution) return tl::unexpected<Error>(solution.error());
+    const auto order = round_tour(graph->goals(), [&](int from, int to) {
+      return graph->edge(from, to).cost.value(objective);
+    });
+    if (!order) return tl::unexpected<Error>(order.error());
     PricedTour tour;
     int at = 0;
-    for (const TourStop& stop : solution->routes.front().stops) {
-      add(graph->edge(at, stop.task + 1), tour);
-      at = stop.task + 1;
+    for (const int goal : *order) {
+      add(graph->edge(at, goal), tour);
+      at = goal;
     }
     add(graph->edge(at, 0), tour);
     return tour;
-  }
-
-  TourProblem tour_problem(const GoalGraph& graph, Objective objective) const {
-    TourProblem problem;
-    problem.sites = graph.goals();
-    TourProfile profile;
-    for (int from = 0; from < problem.sites; ++from) {
-      for (int to = 0; to < problem.sites; ++to) {
-        const DriveCost& cost = graph.edge(from, to).cost;
-        profile.ways.push_back({from == to ? kNever : cost.value(objective)});
-      }
-    }
-    for (int task = 1; task < problem.sites; ++task) {
-      TourTask visit;
-      visit.modes = {{task, task}};
-      problem.tasks.push_back(visit);
-      profile.work.push_back({TourLeg{}});
-    }
-    problem.profiles.push_back(std::move(profile));
-    problem.vehicles.emplace_back();
-    return problem;
   }
 
   void add(const GoalGraph::Edge& edge, PricedTour& tour) const {

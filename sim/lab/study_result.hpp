@@ -64,6 +64,7 @@ struct StudyResult {
   std::vector<StudyCell> cells{};
   std::vector<Plot> plots{};
   std::vector<StudyTable> tables{};
+  std::vector<std::string> files{};  ///< names of what it wrote into the output folder itself
 
   /// The cell of that name, or null.
   const StudyCell* find(const std::string& cell) const {

@@ -28,13 +28,6 @@ struct Cell {
   }
 };
 
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return 0.0;
-  const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
-
 class Study {
  public:
   explicit Study(const TrackingStudyConfig& config) : config_(config) {

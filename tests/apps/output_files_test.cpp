@@ -43,6 +43,14 @@ TEST(OutputFiles, OfAnEarlierCommandAreRemovedAndOthersKept) {
   EXPECT_EQ(content(directory / "notes.txt"), "mine");
 }
 
+TEST(OutputFiles, ThatAreKeptStay) {
+  const auto directory = fresh_directory("kept");
+  ASSERT_TRUE(write_files(directory, {{"episodes.csv", "hours"}, {"trace.csv", "old"}}));
+  ASSERT_TRUE(write_files(directory, {{"results.json", "{}"}}, {"episodes.csv"}));
+  EXPECT_EQ(content(directory / "episodes.csv"), "hours");
+  EXPECT_FALSE(std::filesystem::exists(directory / "trace.csv"));
+}
+
 TEST(OutputFiles, ADirectoryInTheWayIsAnErrorBeforeAnythingIsTouched) {
   const auto directory = fresh_directory("in_the_way");
   ASSERT_TRUE(write_files(directory, {{"trace.csv", "old"}}));
