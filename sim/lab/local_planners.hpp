@@ -13,10 +13,11 @@
 #include "local_planner/prediction/constant_velocity.hpp"
 #include "local_planner/prediction/herd_predictor.hpp"
 #include "local_planner/prediction/orca_predictor.hpp"
+#include "local_planner/velocity_obstacle/velocity_obstacle.hpp"
 
 namespace headland {
 
-enum class LocalPlannerKind { kMcts, kFailSafe };
+enum class LocalPlannerKind { kMcts, kOrca, kFailSafe };
 enum class PredictorKind { kConstantVelocity, kOrca, kHerd };
 
 /// Settings of all local planners.
@@ -26,6 +27,7 @@ struct LocalPlannersConfig {
   ConstantVelocityConfig constant_velocity;
   OrcaConfig orca;
   HerdConfig herd;
+  VelocityObstacleConfig velocity_obstacle;
   FailSafePlannerConfig fs;
 
   template <class V>
@@ -35,6 +37,7 @@ struct LocalPlannersConfig {
     v("constant_velocity", constant_velocity, "Agents that go straight on");
     v("orca", orca, "Agents that give way to each other and to the robot");
     v("herd", herd, "Sheep and cattle");
+    v("velocity_obstacle", velocity_obstacle, "Velocities that avoid agents, reciprocally");
     v("fs", fs, "Following the path and waiting");
   }
 };
@@ -48,7 +51,9 @@ std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
 template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
-      {headland::LocalPlannerKind::kMcts, "mcts"}, {headland::LocalPlannerKind::kFailSafe, "fs"}};
+      {headland::LocalPlannerKind::kMcts, "mcts"},
+      {headland::LocalPlannerKind::kOrca, "orca"},
+      {headland::LocalPlannerKind::kFailSafe, "fs"}};
 };
 
 template <>
