@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "local_planner/cost_to_go.hpp"
 #include "local_planner/course.hpp"
 
 namespace headland {
@@ -19,6 +20,7 @@ constexpr double kPivotPrice = 0.1;    // [m/s]
 constexpr double kPivotRate = 0.6;     // [rad/s]
 constexpr double kStill = 0.05;        // [m/s]
 constexpr double kLookahead = 1.0;     // of the pursuit [m]; and a second's travel
+constexpr double kPathAccuracy = 0.5;  // of aims on the path [m]
 constexpr int kArcs = 5;               // to each side; denser near straight on
 constexpr std::array<double, 4> kSpeeds = {1.0, 0.7, 0.4, -0.4};  // of the wanted one
 constexpr std::array<double, 4> kPursuits = {1.0, 0.75, 0.5, 0.25};
@@ -87,6 +89,19 @@ double VelocityObstacle::violation(const Point2& velocity) const {
   return most;
 }
 
+// How much nearer to the aim a plan comes, along ways that the vehicle can drive [m/s].
+double VelocityObstacle::progress(const LocalPlan& plan) const {
+  const double end = plan.begin_s + config_.mean_s;
+  return (distance_ - distance_from(plan.at(end))) / config_.mean_s;
+}
+
+double VelocityObstacle::distance_from(const VehicleState& state) const {
+  Pose2 pose = state.pose;
+  if (aim_.gear == Gear::kReverse) pose.yaw = wrap_angle(pose.yaw + kPi);
+  return forward_distance(pose, aim_.point, std::min(aim_.accuracy, kPathAccuracy),
+                          vehicle().turning_radius());
+}
+
 Point2 VelocityObstacle::mean_velocity(const LocalPlan& plan) const {
   const VehicleState then = plan.at(plan.begin_s + config_.mean_s);
   return (disc_.centre(then.pose) - disc_.centre(plan.states.front().pose)) / config_.mean_s;
@@ -111,7 +126,7 @@ void VelocityObstacle::hold(const LocalScene& scene, const Motion& motion) {
 void VelocityObstacle::consider(const LocalScene& scene, double extra, LocalPlan& best) {
   const Point2 velocity = mean_velocity(candidate_);
   candidate_.cost =
-      config_.violation_weight * violation(velocity) + (velocity - preferred_).norm() + extra;
+      config_.violation_weight * violation(velocity) + top_ - progress(candidate_) + extra;
   ++best.expansions;
   if (!best.states.empty() && candidate_.cost >= best.cost) return;
   if (!stays_clear(vehicle(), discs_, scene.map, candidate_, kCommit, scratch_)) return;
@@ -149,8 +164,9 @@ void VelocityObstacle::do_plan(const LocalScene& scene, const LocalGoal& goal, c
   standstill_.update(scene.time_s, state.speed);
   find_lines(scene);
   const double top = speed_within(vehicle(), goal.speed_mps, Gear::kForward, 0.0);
-  pursue_path(scene, goal, top);
-  preferred_ = mean_velocity(candidate_);
+  top_ = top;
+  aim_ = Course(goal).from(state, config_.lookahead_m);
+  distance_ = distance_from(state);
   plan.states.clear();
   plan.expansions = 0;
   for (const double scale : kPursuits) {

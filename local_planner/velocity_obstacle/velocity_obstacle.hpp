@@ -6,6 +6,7 @@
 
 #include "core/config/visit.hpp"
 #include "core/model/orca.hpp"
+#include "local_planner/course.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/rollout.hpp"
 #include "local_planner/standstill.hpp"
@@ -22,6 +23,7 @@ struct VelocityObstacleConfig {
   double length_s = 3.0;
   double mean_s = 1.5;  ///< an arc counts as its mean velocity over this time
   double patience_s = 3.0;
+  double lookahead_m = 6.0;
 
   template <class V>
   void visit(V& v) {
@@ -36,6 +38,7 @@ struct VelocityObstacleConfig {
     v("length_s", length_s, config::Range{0.5, 30.0}, "Length of a plan [s]");
     v("mean_s", mean_s, config::Range{0.1, 30.0},
       "An arc counts as its mean velocity over this time [s]");
+    v("lookahead_m", lookahead_m, config::kPositive, "The aim lies so far along the path [m]");
     v("patience_s", patience_s, config::kNonNegative,
       "After standing for so long, standing costs more and more [s]");
   }
@@ -59,6 +62,8 @@ class VelocityObstacle : public LocalPlanner {
  private:
   void find_lines(const LocalScene& scene);
   double violation(const Point2& velocity) const;
+  double progress(const LocalPlan& plan) const;
+  double distance_from(const VehicleState& state) const;
   Point2 mean_velocity(const LocalPlan& plan) const;
   void pursue_path(const LocalScene& scene, const LocalGoal& goal, double speed);
   void hold(const LocalScene& scene, const Motion& motion);
@@ -70,7 +75,9 @@ class VelocityObstacle : public LocalPlanner {
   OutlineDisc disc_;
   Standstill standstill_;
   int steps_;
-  Point2 preferred_{0.0, 0.0};
+  double top_ = 0.0;
+  double distance_ = 0.0;
+  Aim aim_;
   std::vector<std::pair<double, std::size_t>> near_;  // distance, agent
   std::vector<VelocityLine> lines_;
   LocalPlan candidate_;
