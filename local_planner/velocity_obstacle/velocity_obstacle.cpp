@@ -89,12 +89,12 @@ double VelocityObstacle::violation(const Point2& velocity) const {
   return most;
 }
 
-// How much nearer to the aim a plan comes, along ways that the vehicle can drive [m/s].
-double VelocityObstacle::progress(const LocalPlan& plan) const {
-  const double end = plan.begin_s + config_.mean_s;
-  return (distance_ - distance_from(plan.at(end))) / config_.mean_s;
+Point2 VelocityObstacle::mean_velocity(const LocalPlan& plan) const {
+  const VehicleState then = plan.at(plan.begin_s + config_.mean_s);
+  return (disc_.centre(then.pose) - disc_.centre(plan.states.front().pose)) / config_.mean_s;
 }
 
+// Of the way from here to the aim that the vehicle can drive in the aim's gear [m].
 double VelocityObstacle::distance_from(const VehicleState& state) const {
   Pose2 pose = state.pose;
   if (aim_.gear == Gear::kReverse) pose.yaw = wrap_angle(pose.yaw + kPi);
@@ -102,9 +102,10 @@ double VelocityObstacle::distance_from(const VehicleState& state) const {
                           vehicle().turning_radius());
 }
 
-Point2 VelocityObstacle::mean_velocity(const LocalPlan& plan) const {
-  const VehicleState then = plan.at(plan.begin_s + config_.mean_s);
-  return (disc_.centre(then.pose) - disc_.centre(plan.states.front().pose)) / config_.mean_s;
+// How much nearer to the aim a plan comes, along ways that the vehicle can drive [m/s].
+double VelocityObstacle::progress(const LocalPlan& plan) const {
+  const double end = plan.begin_s + config_.mean_s;
+  return (distance_ - distance_from(plan.at(end))) / config_.mean_s;
 }
 
 void VelocityObstacle::pursue_path(const LocalScene& scene, const LocalGoal& goal, double speed) {
@@ -134,7 +135,7 @@ void VelocityObstacle::consider(const LocalScene& scene, double extra, LocalPlan
   std::swap(best, candidate_);
 }
 
-void VelocityObstacle::consider_arcs(const LocalScene& scene, double top, LocalPlan& best) {
+void VelocityObstacle::consider_arcs(const LocalScene& scene, LocalPlan& best) {
   const VehicleState& state = scene.robot.state;
   const double standing = kImpatience * std::max(0.0, standstill_.duration() - config_.patience_s);
   hold(scene, {0.0, curvature_of(vehicle(), state), 0.0});
@@ -145,7 +146,7 @@ void VelocityObstacle::consider_arcs(const LocalScene& scene, double top, LocalP
     for (int k = -kArcs; k <= kArcs; ++k) {
       const double share = static_cast<double>(k) / kArcs;
       const double curvature = tightest_curvature(vehicle()) * share * std::abs(share);
-      const double speed = speed_within(vehicle(), std::abs(scale) * top, gear, curvature);
+      const double speed = speed_within(vehicle(), std::abs(scale) * top_, gear, curvature);
       hold(scene, {sign(gear) * speed, curvature, 0.0});
       consider(scene, scale < 0.0 ? kReversePrice : 0.0, best);
     }
@@ -163,17 +164,16 @@ void VelocityObstacle::do_plan(const LocalScene& scene, const LocalGoal& goal, c
   const VehicleState& state = scene.robot.state;
   standstill_.update(scene.time_s, state.speed);
   find_lines(scene);
-  const double top = speed_within(vehicle(), goal.speed_mps, Gear::kForward, 0.0);
-  top_ = top;
+  top_ = speed_within(vehicle(), goal.speed_mps, Gear::kForward, 0.0);
   aim_ = Course(goal).from(state, config_.lookahead_m);
   distance_ = distance_from(state);
   plan.states.clear();
   plan.expansions = 0;
   for (const double scale : kPursuits) {
-    pursue_path(scene, goal, scale * top);
+    pursue_path(scene, goal, scale * top_);
     consider(scene, 0.0, plan);
   }
-  consider_arcs(scene, top, plan);
+  consider_arcs(scene, plan);
   if (plan.states.empty()) {
     const bool stands = std::abs(state.speed) < kStill;
     brake(vehicle(), state, scene.time_s, stands ? LocalStatus::kBlocked : LocalStatus::kBraking,

@@ -14,16 +14,16 @@
 namespace headland {
 
 struct VelocityObstacleConfig {
-  double horizon_s = 3.0;    ///< tau: contact is avoided for so long
+  double horizon_s = 1.5;    ///< tau: contact is avoided for so long
   double share_ratio = 0.5;  ///< of the avoidance that the robot takes on; 1: agents ignore it
-  double margin_m = 0.1;     ///< outline to disc
+  double margin_m = 0.3;     ///< outline to disc
   double view_m = 10.0;
   int agents_count = 20;
-  double violation_weight = 3.0;  ///< of a border crossed by 1 m/s, against 1 m/s off the wanted
+  double violation_weight = 3.0;  ///< of a border crossed by 1 m/s, against 1 m/s less progress
   double length_s = 3.0;
   double mean_s = 1.5;  ///< an arc counts as its mean velocity over this time
-  double patience_s = 3.0;
   double lookahead_m = 6.0;
+  double patience_s = 3.0;
 
   template <class V>
   void visit(V& v) {
@@ -34,7 +34,7 @@ struct VelocityObstacleConfig {
     v("view_m", view_m, config::kPositive, "Agents are seen up to here [m]");
     v("agents_count", agents_count, config::Range{0, 500}, "... and of these the nearest");
     v("violation_weight", violation_weight, config::kNonNegative,
-      "Of a crossed border [m/s] against the distance from the wanted velocity [m/s]");
+      "Of a crossed border [m/s] against lost progress [m/s]");
     v("length_s", length_s, config::Range{0.5, 30.0}, "Length of a plan [s]");
     v("mean_s", mean_s, config::Range{0.1, 30.0},
       "An arc counts as its mean velocity over this time [s]");
@@ -48,9 +48,9 @@ struct VelocityObstacleConfig {
 /// for vehicles that cannot take any velocity: a fan of the vehicle's own motions (arcs forwards
 /// and backwards, turning on the spot, braking, the pursuit of the path at four speeds) is rolled
 /// out within its limits, and the one is taken whose mean velocity crosses the agents' half-planes
-/// least and lies nearest to what the vehicle would do with nobody there. Motions into static
-/// obstacles are refused; if all are, it brakes. Fixed cost, whatever the budget: about 0.2 ms.
-/// Deterministic; does not allocate once it has seen as many agents.
+/// least and that comes nearest to an aim on the path, along ways that the vehicle can drive.
+/// Motions into static obstacles are refused; if all are, it brakes. Fixed cost, whatever the
+/// budget: about 0.2 ms. Deterministic; does not allocate once it has seen as many agents.
 class VelocityObstacle : public LocalPlanner {
  public:
   VelocityObstacle(const Vehicle& vehicle, const VelocityObstacleConfig& config = {});
@@ -62,22 +62,22 @@ class VelocityObstacle : public LocalPlanner {
  private:
   void find_lines(const LocalScene& scene);
   double violation(const Point2& velocity) const;
-  double progress(const LocalPlan& plan) const;
-  double distance_from(const VehicleState& state) const;
   Point2 mean_velocity(const LocalPlan& plan) const;
+  double distance_from(const VehicleState& state) const;
+  double progress(const LocalPlan& plan) const;
   void pursue_path(const LocalScene& scene, const LocalGoal& goal, double speed);
   void hold(const LocalScene& scene, const Motion& motion);
   void consider(const LocalScene& scene, double extra, LocalPlan& best);
-  void consider_arcs(const LocalScene& scene, double top, LocalPlan& best);
+  void consider_arcs(const LocalScene& scene, LocalPlan& best);
 
   VelocityObstacleConfig config_;
   OutlineDiscs discs_;
   OutlineDisc disc_;
   Standstill standstill_;
   int steps_;
-  double top_ = 0.0;
-  double distance_ = 0.0;
-  Aim aim_;
+  double top_ = 0.0;                                  // fastest progress [m/s]
+  Aim aim_;                                           // of all candidates
+  double distance_ = 0.0;                             // to it, from the robot [m]
   std::vector<std::pair<double, std::size_t>> near_;  // distance, agent
   std::vector<VelocityLine> lines_;
   LocalPlan candidate_;
