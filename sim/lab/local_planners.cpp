@@ -22,6 +22,8 @@ std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
                                                  const LocalPlannersConfig& config,
                                                  const Vehicle& vehicle) {
   switch (kind) {
+    case LocalPlannerKind::kPotentialField:
+      return std::make_unique<PotentialField>(vehicle, config.potential_field);
     case LocalPlannerKind::kOrca:
       return std::make_unique<VelocityObstacle>(vehicle, config.velocity_obstacle);
     case LocalPlannerKind::kFailSafe:

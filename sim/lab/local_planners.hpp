@@ -10,6 +10,7 @@
 #include "local_planner/fail_safe/fail_safe_planner.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
+#include "local_planner/potential_field/potential_field.hpp"
 #include "local_planner/prediction/constant_velocity.hpp"
 #include "local_planner/prediction/herd_predictor.hpp"
 #include "local_planner/prediction/orca_predictor.hpp"
@@ -17,7 +18,7 @@
 
 namespace headland {
 
-enum class LocalPlannerKind { kMcts, kOrca, kFailSafe };
+enum class LocalPlannerKind { kMcts, kPotentialField, kOrca, kFailSafe };
 enum class PredictorKind { kConstantVelocity, kOrca, kHerd };
 
 /// Settings of all local planners.
@@ -27,6 +28,7 @@ struct LocalPlannersConfig {
   ConstantVelocityConfig constant_velocity;
   OrcaConfig orca;
   HerdConfig herd;
+  PotentialFieldConfig potential_field;
   VelocityObstacleConfig velocity_obstacle;
   FailSafePlannerConfig fs;
 
@@ -37,6 +39,7 @@ struct LocalPlannersConfig {
     v("constant_velocity", constant_velocity, "Agents that go straight on");
     v("orca", orca, "Agents that give way to each other and to the robot");
     v("herd", herd, "Sheep and cattle");
+    v("potential_field", potential_field, "Forces that attract and repel");
     v("velocity_obstacle", velocity_obstacle, "Velocities that avoid agents, reciprocally");
     v("fs", fs, "Following the path and waiting");
   }
@@ -52,6 +55,7 @@ template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
       {headland::LocalPlannerKind::kMcts, "mcts"},
+      {headland::LocalPlannerKind::kPotentialField, "pf"},
       {headland::LocalPlannerKind::kOrca, "orca"},
       {headland::LocalPlannerKind::kFailSafe, "fs"}};
 };
