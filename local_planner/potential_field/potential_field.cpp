@@ -8,12 +8,14 @@
 namespace headland {
 namespace {
 
-constexpr double kStep = 0.1;     // of plans [s]
-constexpr double kCommit = 0.5;   // what is driven before the next plan can stop it [s]
-constexpr double kStill = 0.05;   // [m/s]
-constexpr double kPush = 0.02;    // less is no push: the path is followed exactly
-constexpr double kCell = 0.2;     // the slope of the clearance is taken over this [m]
-constexpr double kFarWall = 5.0;  // [m]
+constexpr double kStep = 0.1;      // of plans [s]
+constexpr double kCommit = 0.5;    // what is driven before the next plan can stop it [s]
+constexpr double kStill = 0.05;    // [m/s]
+constexpr double kPush = 0.02;     // less is no push: the path is followed exactly
+constexpr double kCell = 0.2;      // the slope of the clearance is taken over this [m]
+constexpr double kTurnGain = 2.0;  // of the differential vehicle's turning [1/s]
+constexpr double kTurnRate = 1.5;  // [rad/s]
+constexpr double kFarWall = 5.0;   // [m]
 constexpr std::array<double, 3> kSpeeds = {1.0, 0.5, 0.25};  // of the wanted one
 
 // From the nearest point of the outline to a place [m, base]; from its middle if the place is
@@ -76,6 +78,18 @@ Point2 PotentialField::repulsion(const VehicleState& state, const Point2& to_aim
   return config_.velocity.push(sources_, velocity, config_.swirl_ratio, pull);
 }
 
+// Towards a force: a differential vehicle turns while it drives.
+Motion PotentialField::turn_to(const VehicleState& state, const Aim& aim, double speed) const {
+  const Motion motion = pursue(vehicle(), state, aim, speed);
+  if (vehicle().steering != Steering::kDifferential) return motion;
+  const Point2 p = inverse(state.pose) * aim.point;
+  const double off = std::atan2(sign(aim.gear) * p.y(), sign(aim.gear) * p.x());
+  const double pivot = std::clamp(kTurnGain * off, -kTurnRate, kTurnRate);
+  return {
+      sign(aim.gear) * speed_within(vehicle(), speed, aim.gear, 0.0) * std::max(0.0, std::cos(off)),
+      0.0, pivot};
+}
+
 void PotentialField::roll_out(const LocalScene& scene, const LocalGoal& goal, double speed,
                               LocalPlan& plan) {
   begin_plan(scene, kStep, plan);
@@ -87,16 +101,17 @@ void PotentialField::roll_out(const LocalScene& scene, const LocalGoal& goal, do
     Aim aim = course.from(now, config_.lookahead_m);
     const Point2 to_aim = aim.point - now.pose.position();
     const Point2 push = repulsion(now, to_aim);
-    double share = 1.0;
     if (push.norm() > kPush) {
       const Point2 force = unit(to_aim, now.pose.heading()) + push;
       aim.point = now.pose.position() + std::max(1.0, to_aim.norm()) * unit(force, push);
       aim.accuracy = Aim{}.accuracy;  // a direction
-      share = std::clamp(1.0 + sign(aim.gear) * push.dot(now.pose.heading()), 0.0, 1.0);
+      const double share = std::clamp(1.0 + sign(aim.gear) * push.dot(now.pose.heading()),
+                                      config_.least_speed_ratio, 1.0);
+      drive_on(vehicle(), turn_to(now, aim, share * speed), plan);
     } else {
       aim = course.from(now, 1.0 + std::abs(now.speed));
+      drive_on(vehicle(), pursue(vehicle(), now, aim, speed), plan);
     }
-    drive_on(vehicle(), pursue(vehicle(), now, aim, share * speed), plan);
   }
 }
 

@@ -23,7 +23,8 @@ struct PotentialFieldConfig {
   PotentialForm form = PotentialForm::kVelocity;
   SeedRepulsion seed;
   VelocityRepulsion velocity;
-  double swirl_ratio = 0.5;  ///< of each push, turned aside: around instead of back
+  double swirl_ratio = 0.5;        ///< of each push, turned aside: around instead of back
+  double least_speed_ratio = 0.3;  ///< of the wanted one, against pushes
   double lookahead_m = 4.0;
   double length_s = 3.0;
   double view_m = 10.0;
@@ -35,6 +36,8 @@ struct PotentialFieldConfig {
     v("velocity", velocity, "Field of Ge and Cui");
     v("swirl_ratio", swirl_ratio, config::Range{0.0, 10.0},
       "Of each push, turned aside so that it leads around");
+    v("least_speed_ratio", least_speed_ratio, config::kFraction,
+      "Of the wanted speed: pushes slow down no further");
     v("lookahead_m", lookahead_m, config::Range{0.1, 20.0},
       "What attracts lies so far along the path [m]");
     v("length_s", length_s, config::Range{0.5, 30.0}, "Length of a plan [s]");
@@ -57,6 +60,7 @@ class PotentialField : public LocalPlanner {
                LocalPlan& plan) override;
 
  private:
+  Motion turn_to(const VehicleState& state, const Aim& aim, double speed) const;
   void roll_out(const LocalScene& scene, const LocalGoal& goal, double speed, LocalPlan& plan);
   void find_sources(const LocalScene& scene, const VehicleState& state, double ahead_s);
   void add_obstacle(const ClearanceMap& map, const VehicleState& state);

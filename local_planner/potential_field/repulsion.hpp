@@ -38,10 +38,10 @@ struct SeedRepulsion {
 /// The field of Ge and Cui (2002), U = strength (1 / (gap - braking) - 1 / reach) while the vehicle
 /// and the source come nearer, with braking = (closing speed)^2 / (2 acceleration).
 struct VelocityRepulsion {
-  double strength_m = 0.5;
+  double strength_m = 0.2;
   double reach_m = 2.5;
   double margin_m = 0.3;
-  double acceleration_mps2 = 1.0;
+  double acceleration_mps2 = 4.0;  ///< more than the robot has: others move, too
 
   template <class V>
   void visit(V& v) {

@@ -45,8 +45,8 @@ TEST(PotentialField, GoesAroundWhoStandsBesideThePath) {
       PotentialField planner(vehicle, of_form(form));
       const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 0.0, 0.5, 1.2};
       const Episode e = drive(vehicle, planner, nullptr, goal, {{{8.0, 0.9}, {0.0, 0.0}}});
-      EXPECT_TRUE(e.reached) << vehicle.name;
-      EXPECT_GT(e.least_gap, 0.0) << vehicle.name;
+      EXPECT_TRUE(e.reached) << vehicle.name << ", form " << static_cast<int>(form);
+      EXPECT_GT(e.least_gap, 0.0) << vehicle.name << ", form " << static_cast<int>(form);
     }
   }
 }
