@@ -7,6 +7,10 @@ std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
                                                  const Vehicle& vehicle,
                                                  const PredictorFactory& predictor) {
   switch (kind) {
+    case LocalPlannerKind::kPotentialField:
+      return std::make_unique<PotentialField>(vehicle, config.potential_field);
+    case LocalPlannerKind::kOrca:
+      return std::make_unique<VelocityObstacle>(vehicle, config.velocity_obstacle);
     case LocalPlannerKind::kFailSafe:
       return std::make_unique<FailSafePlanner>(vehicle, config.fs);
     case LocalPlannerKind::kMcts:

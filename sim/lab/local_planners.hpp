@@ -10,17 +10,21 @@
 #include "local_planner/fail_safe/fail_safe_planner.hpp"
 #include "local_planner/local_planner.hpp"
 #include "local_planner/mcts/mcts_planner.hpp"
+#include "local_planner/potential_field/potential_field.hpp"
 #include "local_planner/prediction/predictors.hpp"
+#include "local_planner/velocity_obstacle/velocity_obstacle.hpp"
 
 namespace headland {
 
-enum class LocalPlannerKind { kMcts, kFailSafe };
+enum class LocalPlannerKind { kMcts, kPotentialField, kOrca, kFailSafe };
 
 /// Settings of all local planners.
 struct LocalPlannersConfig {
   MctsConfig mcts;
   PredictorKind predictor = PredictorKind::kOrca;
   PredictorsConfig predictors;
+  PotentialFieldConfig potential_field;
+  VelocityObstacleConfig velocity_obstacle;
   FailSafePlannerConfig fs;
 
   template <class V>
@@ -28,6 +32,8 @@ struct LocalPlannersConfig {
     v("mcts", mcts, "Monte Carlo tree search");
     v("predictor", predictor, "How the tree search expects agents to move");
     predictors.visit(v);
+    v("potential_field", potential_field, "Forces that attract and repel");
+    v("velocity_obstacle", velocity_obstacle, "Velocities that avoid agents, reciprocally");
     v("fs", fs, "Following the path and waiting");
   }
 };
@@ -48,5 +54,8 @@ std::unique_ptr<LocalPlanner> make_local_planner(LocalPlannerKind kind,
 template <>
 struct headland::config::EnumNames<headland::LocalPlannerKind> {
   static constexpr std::pair<headland::LocalPlannerKind, std::string_view> values[] = {
-      {headland::LocalPlannerKind::kMcts, "mcts"}, {headland::LocalPlannerKind::kFailSafe, "fs"}};
+      {headland::LocalPlannerKind::kMcts, "mcts"},
+      {headland::LocalPlannerKind::kPotentialField, "pf"},
+      {headland::LocalPlannerKind::kOrca, "orca"},
+      {headland::LocalPlannerKind::kFailSafe, "fs"}};
 };
