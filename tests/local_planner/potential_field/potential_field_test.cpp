@@ -32,7 +32,7 @@ TEST(PotentialField, WithNobodyThereItFollowsThePath) {
   for (const PotentialForm form : kForms) {
     for (const Vehicle& vehicle : {field_robot(), tractor(), rover()}) {
       PotentialField planner(vehicle, of_form(form));
-      const LocalGoal goal{&path, 0.0, path.end_pose().position(), 0.0, 0.5, 1.2};
+      const LocalGoal goal{&path, 0.0, path.end_pose().position(), 0.5, 1.2};
       const Episode e = drive(vehicle, planner, nullptr, goal, {});
       EXPECT_TRUE(e.reached) << vehicle.name;
       EXPECT_LT(e.farthest_off, 0.3) << vehicle.name;
@@ -45,7 +45,7 @@ TEST(PotentialField, GoesAroundWhoStandsBesideThePath) {
   for (const PotentialForm form : kForms) {
     for (const Vehicle& vehicle : {field_robot(), tractor(), rover()}) {
       PotentialField planner(vehicle, of_form(form));
-      const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 0.0, 0.5, 1.2};
+      const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 0.5, 1.2};
       const Episode e = drive(vehicle, planner, nullptr, goal, {{{8.0, 0.9}, {0.0, 0.0}}});
       EXPECT_TRUE(e.reached) << vehicle.name << ", form " << static_cast<int>(form);
       EXPECT_GT(e.least_gap, 0.0) << vehicle.name << ", form " << static_cast<int>(form);
@@ -102,7 +102,7 @@ TEST(PotentialField, KeepsItsBuffers) {
   RandomStream random(3, "buffers");
   OwnedScene owned;
   owned.agents = crowd(50, 12.0, random);
-  const LocalGoal goal{nullptr, 0.0, {15.0, 0.0}, 0.0, 1.0, 1.2};
+  const LocalGoal goal{nullptr, 0.0, {15.0, 0.0}, 1.0, 1.2};
   PotentialField planner(field_robot());
   LocalPlan plan;
   for (int i = 0; i < 3; ++i) planner.plan(owned.view(0.3 * i), goal, {}, plan);

@@ -36,7 +36,7 @@ TEST(VelocityObstacle, PassesWhoCrossesWithoutGivingWay) {
   for (const Vehicle& vehicle : {field_robot(), tractor(), rover()}) {
     for (const double side : {-1.0, 1.0}) {
       VelocityObstacle planner(vehicle, config);
-      const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 0.5, 1.2};
+      const LocalGoal goal{&path, 0.0, {15.0, 0.0}, 1.2, 1.0};
       const Episode e =
           drive(vehicle, planner, nullptr, goal, {{{8.0, 8.0 * side}, {0.0, -1.2 * side}}});
       EXPECT_TRUE(e.reached) << vehicle.name;
@@ -52,8 +52,8 @@ TEST(VelocityObstacle, TwoOfItsKindPassEachOther) {
     std::array<VelocityObstacle, 2> planners{VelocityObstacle(vehicle), VelocityObstacle(vehicle)};
     std::array<VehicleState, 2> robots;
     robots[1].pose = {24.0, 1.0, kPi};
-    const std::array<LocalGoal, 2> goals{LocalGoal{nullptr, 0.0, {24.0, 1.0}, 0.0, 1.0, 1.2},
-                                         LocalGoal{nullptr, 0.0, {0.0, 0.0}, 0.0, 1.0, 1.2}};
+    const std::array<LocalGoal, 2> goals{LocalGoal{nullptr, 0.0, {24.0, 1.0}, 1.0, 1.2},
+                                         LocalGoal{nullptr, 0.0, {0.0, 0.0}, 1.0, 1.2}};
     std::array<bool, 2> reached{};
     double nearest = 1e9;
     LocalPlan plan;
@@ -83,7 +83,7 @@ TEST(VelocityObstacle, KeepsItsBuffers) {
   OwnedScene owned;
   owned.agents = crowd(50, 12.0, random);
   owned.map = ClearanceMap::of({box(5.0, 4.0, 8.0, 6.0)});
-  const LocalGoal goal{nullptr, 0.0, {15.0, 0.0}, 0.0, 1.0, 1.2};
+  const LocalGoal goal{nullptr, 0.0, {15.0, 0.0}, 1.0, 1.2};
   const Vehicle vehicle = field_robot();
   VelocityObstacle planner(vehicle);
   LocalPlan plan;
