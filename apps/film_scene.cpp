@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/agent_tracks.hpp"
 #include "core/geometry/angle.hpp"
 
 namespace headland::apps {
@@ -65,30 +66,6 @@ ReportSeries series_of(const std::vector<const FilmFrame*>& frames) {
   return series;
 }
 
-// Who goes out of sight and comes back is somebody else.
-ReportAgents agents_of(const std::vector<const FilmFrame*>& frames) {
-  ReportAgents agents;
-  if (frames.size() < 2) return agents;
-  agents.start_s = frames[0]->time_s;
-  agents.period_s = frames[1]->time_s - frames[0]->time_s;
-  std::map<int, std::size_t> last;  // track of an id
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    for (const Agent& agent : frames[k]->agents) {
-      const auto known = last.find(agent.id);
-      const bool goes_on = known != last.end() && [&] {
-        const ReportAgent& track = agents.tracks[known->second];
-        return static_cast<std::size_t>(track.first) + track.positions.size() == k;
-      }();
-      if (!goes_on) {
-        last[agent.id] = agents.tracks.size();
-        agents.tracks.push_back({agent.radius_m, static_cast<int>(k)});
-      }
-      agents.tracks[last[agent.id]].positions.push_back(agent.position);
-    }
-  }
-  return agents;
-}
-
 // Three quarters of the way through what is shown.
 double worst_moment(const Film& film) {
   for (const char* kind : {"given_up", "contact", "near_robot", "near_agent"}) {
@@ -120,7 +97,9 @@ ReportEpisode film_episode(const Film& film) {
   ReportEpisode episode{film.name, film.note, {}};
   if (frames.empty()) return episode;
   episode.scene.features = features_of(film, frames.front()->time_s, frames.back()->time_s);
-  episode.scene.agents = agents_of(frames);
+  std::vector<AgentsAt> sights;
+  for (const FilmFrame* frame : frames) sights.push_back({frame->time_s, frame->agents});
+  episode.scene.agents = agent_tracks(sights);
   episode.scene.vehicles = {
       {.name = "robot", .series = series_of(frames), .outline = film.outline}};
   return episode;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "apps/agent_tracks.hpp"
 #include "apps/film_scene.hpp"
 #include "apps/plan_output.hpp"
 #include "apps/report_terrain.hpp"
@@ -277,6 +278,23 @@ Report plan_report(const PlannedMission& planned) {
   return report;
 }
 
+namespace {
+
+// Thinned out, as a page has to be loaded.
+ReportAgents agents_about(const FleetRun& run) {
+  constexpr std::size_t kMostPositions = 60000;
+  if (run.agents.empty()) return {};
+  const std::size_t positions = run.agents.size() * run.agents.front().agents.size();
+  const std::size_t stride = 1 + positions / kMostPositions;
+  std::vector<AgentsAt> sights;
+  for (std::size_t k = 0; k < run.agents.size(); k += stride) {
+    sights.push_back({run.agents[k].t_s, run.agents[k].agents});
+  }
+  return agent_tracks(sights);
+}
+
+}  // namespace
+
 Report run_report(const PlannedMission& planned, const FleetRun& run, double real_time_factor) {
   std::set<std::string> rows_done;
   for (std::size_t v = 0; v < run.vehicles.size(); ++v) {
@@ -289,6 +307,7 @@ Report run_report(const PlannedMission& planned, const FleetRun& run, double rea
   Report report = base_report(planned, ReportKind::kRun, rows_done);
   const RunMetrics& m = run.metrics;
   report.status = m.completed ? "completed" : "failed";
+  report.agents = agents_about(run);
   report.seed = planned.config.simulation.seed;
   report.tiles.push_back(
       {"Rows done", fmt::format("{} / {}", m.rows_done, m.rows_total), "", m.reason});

@@ -59,7 +59,9 @@ TEST(CrowdStudy, HasACellForEachPlannerWithPeopleWhoSeeAndWhoDoNot) {
 TEST(CrowdStudy, FilmsEpisodesOfEachPlanner) {
   StudyRun run;
   run.films_count = 3;
-  const auto result = run_crowd_study(small(), run);
+  CrowdStudyConfig config = small();
+  config.planners = {LocalPlannerKind::kMcts, LocalPlannerKind::kFailSafe};
+  const auto result = run_crowd_study(config, run);
   ASSERT_TRUE(result);
   ASSERT_EQ(result->films.size(), 3U);
   EXPECT_TRUE(result->films[0].name.starts_with("mcts/"));
