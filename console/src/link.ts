@@ -25,10 +25,10 @@ export class Link {
   private state: Selection;
   private listeners: ((state: Selection, what: keyof Selection) => void)[] = [];
 
-  /// At the scene's beginning; an episode among agents is followed.
+  /// At the scene's beginning; a single vehicle among agents is followed.
   constructor(scene: Scene) {
     const time = duration(scene)?.[0] ?? null;
-    this.state = {cursor: null, range: null, leg: null, time, follow: time !== null && scene.agents !== undefined};
+    this.state = {cursor: null, range: null, leg: null, time, follow: time !== null && scene.agents !== undefined && scene.vehicles.length === 1};
   }
 
   get current(): Readonly<Selection> {
