@@ -12,7 +12,6 @@ constexpr double kBehind = 3.0;   // the path is searched this far back for the 
 constexpr double kAhead = 3.0;    // ... and ahead
 constexpr double kWidens = 4.0;   // a free path is taken up from twice as far after so long [s] ...
 constexpr double kWidest = 6.0;   // ... and at most this many times
-constexpr double kNoDelay = 0.0;  // beyond a stand nobody needs to wait
 
 // Since when something holds at `time` [s]; -1: it does not.
 void hold(bool holds, double time, double& since) {
@@ -29,7 +28,7 @@ Arbiter::Arbiter(const Vehicle& vehicle, const ArbiterConfig& config)
     : vehicle_(vehicle), config_(config) {}
 
 double Arbiter::wait(double spare_ratio) const {
-  if (config_.scarce_ratio <= 0.0) return kNoDelay;
+  if (config_.scarce_ratio <= 0.0) return 0.0;
   const double scarce = std::clamp(1.0 - spare_ratio / config_.scarce_ratio, 0.0, 1.0);
   const double sparse = std::clamp(1.0 - density_ / config_.dense_per_m2, 0.0, 1.0);
   return config_.wait_s * scarce * sparse;

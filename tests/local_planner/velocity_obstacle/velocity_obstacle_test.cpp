@@ -29,6 +29,7 @@ TEST(VelocityObstacle, WithNobodyThereItFollowsThePath) {
   }
 }
 
+// At 1 m/s. At 1.2 m/s the cars do not get by without a touch: the fail-safe has to lie beneath.
 TEST(VelocityObstacle, PassesWhoCrossesWithoutGivingWay) {
   const Path path = curved_path();
   VelocityObstacleConfig config;
