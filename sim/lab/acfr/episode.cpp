@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/base/random.hpp"
+#include "sim/crowd/sight.hpp"
 
 namespace headland {
 namespace {
@@ -89,16 +90,8 @@ class Drive {
 
   // What the robot sees, with noise.
   LocalScene look(double time) {
-    seen_.clear();
-    for (Agent agent : crowd_.agents()) {
-      const double distance = (agent.position - centre()).norm();
-      if (distance > world_.view_m) continue;
-      agent.radius_m = world_.agent_radius_m;
-      agent.noise_m = std::max(0.01, world_.agent_noise_ratio * distance);
-      const double sigma = world_.agent_noise_ratio * distance;
-      agent.position += Point2(sigma * noise_.normal(), sigma * noise_.normal());
-      seen_.push_back(agent);
-    }
+    see_agents(crowd_.agents(), centre(), world_.view_m, world_.agent_noise_ratio, noise_, seen_);
+    for (Agent& agent : seen_) agent.radius_m = world_.agent_radius_m;
     LocalScene scene;
     scene.time_s = time;
     scene.agents = seen_;

@@ -6,6 +6,7 @@
 
 #include "local_planner/outline.hpp"
 #include "local_planner/rollout.hpp"
+#include "sim/crowd/sight.hpp"
 
 namespace headland {
 namespace {
@@ -39,16 +40,7 @@ void LocalLayer::look(double time, const VehicleEstimate& known, std::span<const
   const bool lost = time >= sight.lost_from_s && time < sight.lost_until_s;
   if (!lost && time - seen_at_ >= sight.period_s - kSameTick) {
     seen_at_ = time;
-    seen_.clear();
-    const Point2 here = known.state.pose.position();
-    for (Agent agent : agents) {
-      const double distance = (agent.position - here).norm();
-      if (distance > sight.view_m) continue;
-      const double sigma = sight.noise_ratio * distance;
-      agent.noise_m = std::max(0.01, sigma);
-      agent.position += Point2(sigma * noise_.normal(), sigma * noise_.normal());
-      seen_.push_back(agent);
-    }
+    see_agents(agents, known.state.pose.position(), sight.view_m, sight.noise_ratio, noise_, seen_);
   }
   scene_.time_s = time;
   scene_.robot = known;
