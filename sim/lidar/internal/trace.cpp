@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ray through the blocks of a world, after Amanatides and Woo 1987.
+#include <algorithm>
+#include <cmath>
+
+#include "sim/lidar/internal/world.hpp"
+
+namespace headland::internal {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Optical depth per metre of a voxel by its stored density.
+constexpr double kRate = kLeafProjection * World::kDensityStep;
+
+// Walk of a line along one axis of a grid: when it next crosses, and into which cell.
+struct Walk {
+  double next = kInfinity;
+  double period = kInfinity;
+  int step = 0;
+
+  // `place`: where the line is at time `t`, in cells; `speed`: cells per unit of time.
+  Walk(double place, int cell, double speed, double t) {
+    if (speed > 0.0) {
+      step = 1;
+      period = 1.0 / speed;
+      next = t + (cell + 1 - place) * period;
+    } else if (speed < 0.0) {
+      step = -1;
+      period = -1.0 / speed;
+      next = t + (place - cell) * period;
+    }
+  }
+  void advance(int& cell) {
+    cell += step;
+    next += period;
+  }
+};
+
+struct Contact {
+  double t = kInfinity;
+  double cosine = 1.0;
+};
+
+// First contact of the line with a capsule from outside, at t >= 0.
+Contact meet(const Eigen::Vector3d& start, const Eigen::Vector3d& step, const Body& body,
+             double radius) {
+  const Eigen::Vector3d axis = body.b - body.a;
+  const Eigen::Vector3d from_a = start - body.a;
+  const double axis2 = axis.squaredNorm();
+  const double step2 = step.squaredNorm();
+  const double along = axis.dot(step);
+  const double offset = axis.dot(from_a);
+  const double a = axis2 * step2 - along * along;
+  const double b = axis2 * step.dot(from_a) - offset * along;
+  const double c = axis2 * (from_a.squaredNorm() - radius * radius) - offset * offset;
+  const auto contact = [&](double t, double share) {
+    const Eigen::Vector3d outward = start + t * step - (body.a + share * axis);
+    return Contact{t, std::abs(outward.dot(step)) / (radius * std::sqrt(step2))};
+  };
+  double y = along > 0.0 ? -1.0 : 2.0 * axis2;  // which cap a parallel line meets
+  if (a > 1e-12 * axis2 * step2) {
+    const double d = b * b - a * c;
+    if (d < 0.0) return {};
+    const double t = (-b - std::sqrt(d)) / a;
+    y = offset + t * along;
+    if (y > 0.0 && y < axis2) return t >= 0.0 ? contact(t, y / axis2) : Contact{};
+  }
+  const double share = y <= 0.0 ? 0.0 : 1.0;
+  const Eigen::Vector3d from_cap = from_a - share * axis;
+  const double half = step.dot(from_cap);
+  const double d = half * half - step2 * (from_cap.squaredNorm() - radius * radius);
+  if (d < 0.0) return {};
+  const double t = (-half - std::sqrt(d)) / step2;
+  return t >= 0.0 ? contact(t, share) : Contact{};
+}
+
+// Whether the capsule may touch a piece whose heights lie within [low, high] and whose way in the
+// plane is a line through (x, y) along the unit vector `along`: a cheap bound for most bodies.
+bool near(const Body& body, double low, double high, const Point2& start, const Point2& along,
+          double radius) {
+  if (std::min(body.a.z(), body.b.z()) - radius > high) return false;
+  if (std::max(body.a.z(), body.b.z()) + radius < low) return false;
+  const Point2 a = body.a.head<2>() - start;
+  const Point2 b = body.b.head<2>() - start;
+  const double side_a = along.x() * a.y() - along.y() * a.x();
+  const double side_b = along.x() * b.y() - along.y() * b.x();
+  return std::min(side_a, side_b) <= radius && std::max(side_a, side_b) >= -radius;
+}
+
+}  // namespace
+
+RayHit World::trace(const Ray& ray, const BodyIndex& moving) const {
+  const Eigen::Vector3d& o = ray.origin;
+  const Eigen::Vector3d& d = ray.direction;
+  RayHit hit;
+  if (!(o.allFinite() && d.allFinite())) return hit;
+  // The part of the ray above the grid.
+  double t = 0.0;
+  double last = ray.max_range;
+  const Point2 size(columns_ * kBlock, rows_ * kBlock);
+  for (int i = 0; i < 2; ++i) {
+    const double low = origin_[i] - o[i];
+    const double high = low + size[i];
+    if (d[i] == 0.0) {
+      if (low > 0.0 || high < 0.0) return hit;
+      continue;
+    }
+    t = std::max(t, std::min(low / d[i], high / d[i]));
+    last = std::min(last, std::max(low / d[i], high / d[i]));
+  }
+  if (!(t < last)) return hit;
+  // Above all that stands, and rising.
+  if (d.z() > 0.0) last = std::min(last, (highest_ - o.z()) / d.z());
+
+  const Point2 place = (o.head<2>() + t * d.head<2>() - origin_) / kBlock;
+  Piece piece;
+  piece.column = std::clamp(static_cast<int>(std::floor(place.x())), 0, columns_ - 1);
+  piece.row = std::clamp(static_cast<int>(std::floor(place.y())), 0, rows_ - 1);
+  Walk x(place.x(), piece.column, d.x() / kBlock, t);
+  Walk y(place.y(), piece.row, d.y() / kBlock, t);
+  const auto above_ground = [&](double at) {
+    if (flat_) return o.z() + at * d.z();
+    return o.z() + at * d.z() -
+           height_in(piece.column, piece.row, o.x() + at * d.x(), o.y() + at * d.y());
+  };
+  double height = above_ground(t);
+  if (height < 0.0) return hit;
+  double depth = ray.depth;
+  while (t < last && piece.column >= 0 && piece.column < columns_ && piece.row >= 0 &&
+         piece.row < rows_) {
+    piece.begin = t;
+    piece.end = std::min({x.next, y.next, last});
+    const double height_after = above_ground(piece.end);
+    if (std::min(height, height_after) <= tallest_ && piece.end > t) {
+      const double slope = (height_after - height) / (piece.end - t);
+      piece.start = {o.x(), o.y(), height - t * slope};
+      piece.step = {d.x(), d.y(), slope};
+      if (hit_in(ray, moving, piece, depth, hit)) return hit;
+    }
+    t = piece.end;
+    height = height_after;
+    if (x.next < y.next) {
+      x.advance(piece.column);
+    } else {
+      y.advance(piece.row);
+    }
+  }
+  return hit;
+}
+
+bool World::hit_in(const Ray& ray, const BodyIndex& moving, Piece& piece, double& depth,
+                   RayHit& hit) const {
+  const double height_after = piece.height(piece.end);
+  if (height_after < 0.0) {
+    const double t = -piece.start.z() / piece.step.z();
+    const double cosine = flat_ ? -piece.step.z() : [&] {
+      const Point2 gradient = ground(piece.start.head<2>() + t * piece.step.head<2>()).gradient;
+      return -piece.step.z() / std::sqrt(1.0 + gradient.squaredNorm());
+    }();
+    piece.end = std::clamp(t, piece.begin, piece.end);
+    hit = {piece.end, Surface::kGround, std::min(1.0, cosine), -1};
+  }
+  hit_bodies(ray, fixed_, piece, hit);
+  hit_bodies(ray, moving, piece, hit);
+  hit_porous(piece, depth, hit);
+  return hit.surface != Surface::kNone;
+}
+
+void World::hit_bodies(const Ray& ray, const BodyIndex& index, Piece& piece, RayHit& hit) const {
+  std::int32_t link = index.head.empty()
+                          ? -1
+                          : index.head[static_cast<std::size_t>(block(piece.column, piece.row))];
+  if (link < 0) return;
+  const double first = piece.height(piece.begin);
+  const double second = piece.height(piece.end);
+  const Point2 along = piece.step.head<2>().normalized();
+  for (; link >= 0; link = index.links[static_cast<std::size_t>(link)].second) {
+    const Body& body =
+        index.bodies[static_cast<std::size_t>(index.links[static_cast<std::size_t>(link)].first)];
+    double radius = body.radius;
+    if (body.surface == Surface::kWire) {
+      // The share of the ray's width that the wire fills.
+      const double half_width = 0.5 * ray.width_rad * piece.begin;
+      if (ray.chance * (radius + half_width) >= radius) continue;
+      radius += half_width;
+    }
+    if (!near(body, std::min(first, second), std::max(first, second), piece.start.head<2>(), along,
+              radius)) {
+      continue;
+    }
+    const Contact contact = meet(piece.start, piece.step, body, radius);
+    if (contact.t < piece.begin || contact.t > piece.end) continue;
+    piece.end = contact.t;
+    hit = {contact.t, body.surface, contact.cosine, body.agent};
+  }
+}
+
+// Leaves stop a ray where the optical depth passed, G times leaf area density times the way,
+// reaches the ray's.
+bool World::hit_porous(const Piece& piece, double& depth, RayHit& hit) const {
+  const std::int32_t volume = volume_[static_cast<std::size_t>(block(piece.column, piece.row))];
+  const double top = volume >= 0 ? layers_ * kVoxel : grass_top_;
+  double t = piece.begin;
+  double end = piece.end;
+  const double slope = piece.step.z();
+  if (slope < 0.0) {
+    t = std::max(t, (top - piece.start.z()) / slope);
+  } else if (slope > 0.0) {
+    end = std::min(end, (top - piece.start.z()) / slope);
+  } else if (piece.start.z() > top) {
+    return false;
+  }
+  if (!(t < end) || depth == kInfinity) return false;
+
+  const Eigen::Vector3d corner(origin_.x() + piece.column * kBlock,
+                               origin_.y() + piece.row * kBlock, 0.0);
+  const Eigen::Vector3d place = (piece.start + t * piece.step - corner) / kVoxel;
+  const Eigen::Vector3d speed = piece.step / kVoxel;
+  const auto cell = [](double value, int count) {
+    return std::clamp(static_cast<int>(std::floor(value)), 0, count - 1);
+  };
+  int column = cell(place.x(), kSide);
+  int row = cell(place.y(), kSide);
+  int layer = cell(place.z(), layers_);
+  Walk x(place.x(), column, speed.x(), t);
+  Walk y(place.y(), row, speed.y(), t);
+  Walk z(place.z(), layer, speed.z(), t);
+  while (t < end) {
+    const double next = std::min({x.next, y.next, z.next, end});
+    if (volume >= 0) {
+      const std::uint8_t stored =
+          voxels_[static_cast<std::size_t>(((volume + layer) * kSide + row) * kSide + column)];
+      const double rate = kRate * stored;
+      if (rate * (next - t) >= depth) {
+        hit = {t + depth / rate, Surface::kCanopy, 1.0, -1};
+        return true;
+      }
+      depth -= rate * std::max(0.0, next - t);
+    }
+    if (layer == 0 && grass_top_ > 0.0 && hit_grass(piece, t, next, column, row, depth, hit)) {
+      return true;
+    }
+    t = next;
+    Walk& crossed = x.next <= y.next ? (x.next <= z.next ? x : z) : (y.next <= z.next ? y : z);
+    int& index = &crossed == &x ? column : &crossed == &y ? row : layer;
+    crossed.advance(index);
+    if (column < 0 || column >= kSide || row < 0 || row >= kSide || layer < 0 || layer >= layers_) {
+      return false;
+    }
+  }
+  return false;
+}
+
+bool World::hit_grass(const Piece& piece, double begin, double end, int column, int row,
+                      double& depth, RayHit& hit) const {
+  const int x = (piece.column * kSide + column) % kGrassSide;
+  const int y = (piece.row * kSide + row) % kGrassSide;
+  const double top = grass_[static_cast<std::size_t>(y * kGrassSide + x)];
+  const double slope = piece.step.z();
+  if (slope < 0.0) {
+    begin = std::max(begin, (top - piece.start.z()) / slope);
+  } else if (slope > 0.0) {
+    end = std::min(end, (top - piece.start.z()) / slope);
+  } else if (piece.start.z() > top) {
+    return false;
+  }
+  if (!(begin < end)) return false;
+  if (grass_rate_ * (end - begin) >= depth) {
+    hit = {begin + depth / grass_rate_, Surface::kGrass, 1.0, -1};
+    return true;
+  }
+  depth -= grass_rate_ * (end - begin);
+  return false;
+}
+
+}  // namespace headland::internal
