@@ -65,6 +65,10 @@ Json to_json(const ReportFeature& feature) {
       json["type"] = "Point";
       json["coordinates"] = to_json(feature.rings.at(0).at(0));
       break;
+    case ReportFeature::Shape::kPoints:
+      json["type"] = "MultiPoint";
+      json["coordinates"] = to_json(feature.rings.at(0));
+      break;
     case ReportFeature::Shape::kLine:
       json["type"] = "LineString";
       json["coordinates"] = to_json(feature.rings.at(0));
@@ -266,6 +270,7 @@ Json vehicles_json(const std::vector<ReportVehicle>& vehicles) {
 Json to_json(const ReportScene& scene) {
   Json json = {{"map", {{"features", all_of(scene.features)}}},
                {"vehicles", vehicles_json(scene.vehicles)}};
+  if (scene.in_base) json["in_base"] = true;
   if (scene.terrain) json["terrain"] = to_json(*scene.terrain);
   if (!scene.agents.tracks.empty()) json["agents"] = to_json(scene.agents);
   return json;
@@ -283,6 +288,8 @@ std::string_view name_of(ReportKind kind) {
       return "run";
     case ReportKind::kStudy:
       return "study";
+    case ReportKind::kScan:
+      return "scan";
   }
   return "?";
 }
@@ -302,6 +309,10 @@ ReportFeature ReportFeature::point(std::string kind, std::string name, const Poi
           .name = std::move(name),
           .rings = {{position}},
           .shape = Shape::kPoint};
+}
+
+ReportFeature ReportFeature::points(std::string kind, Polyline points) {
+  return {.kind = std::move(kind), .rings = {std::move(points)}, .shape = Shape::kPoints};
 }
 
 ReportFeature ReportFeature::line(std::string kind, std::string name, Polyline line) {

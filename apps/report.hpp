@@ -29,20 +29,23 @@ struct ReportTile {
 
 /// One thing on the map. Kinds the page knows: parcel, headland, road, keep_out, row, row_done,
 /// gate, poi, charger, plan (the planned path, one feature per leg), goal (to be reached), and what
-/// happened at a moment: near_agent, near_robot (by whose doing), near_miss, contact, given_up.
+/// happened at a moment: near_agent, near_robot (by whose doing), near_miss, contact, given_up. In
+/// a scan: points_ground, points_low, points_high, lane (the row's middle), lane_side, row_end,
+/// cluster, sensor.
 struct ReportFeature {
   std::string kind;
   std::string id{};
   std::string name{};
-  /// Point and line: exactly one list of points. Polygon: the outer ring, then the holes.
+  /// Point, points and line: exactly one list of points. Polygon: the outer ring, then the holes.
   std::vector<Polyline> rings;  ///< [m, map]
-  enum class Shape { kPoint, kLine, kPolygon } shape = Shape::kLine;
+  enum class Shape { kPoint, kPoints, kLine, kPolygon } shape = Shape::kLine;
   std::optional<int> vehicle{};  ///< whose plan: an index of Report::vehicles
   std::optional<int> leg{};      ///< of the plan; legs are the numbers of Path
   std::string leg_kind{};        ///< row, turn, transit, task or charge
   std::optional<double> t_s{};   ///< when it happened, on the clock of the series
 
   static ReportFeature point(std::string kind, std::string name, const Point2& position);
+  static ReportFeature points(std::string kind, Polyline points);
   static ReportFeature line(std::string kind, std::string name, Polyline line);
   static ReportFeature polygon(std::string kind, std::string name, const Polygon& polygon);
 };
@@ -136,6 +139,7 @@ struct ReportPlot {
 
 /// What a map shows, and plays if its vehicles' series have times.
 struct ReportScene {
+  bool in_base = false;  ///< a vehicle's surroundings, in `base` instead of `map`
   std::vector<ReportFeature> features{};
   std::vector<ReportVehicle> vehicles{};
   std::optional<ReportTerrain> terrain{};
@@ -149,7 +153,7 @@ struct ReportEpisode {
   ReportScene scene;
 };
 
-enum class ReportKind { kPlan, kRun, kStudy };
+enum class ReportKind { kPlan, kRun, kStudy, kScan };
 
 /// All that report.html shows. An empty part takes no room on the page.
 struct Report : ReportScene {

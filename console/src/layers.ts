@@ -22,6 +22,10 @@ export const kLayers: Layer[] = [
   {key: 'parcel', label: 'Parcels', fill: 'map-parcel', stroke: 'map-parcel-edge', width: 1.2},
   {key: 'keep_out', label: 'Keep-outs', fill: 'map-keep-out', stroke: 'map-keep-out-edge', width: 1},
   {key: 'contours', label: 'Contours', stroke: 'contour', width: 0.8},
+  {key: 'points_ground', label: 'Ground', fill: 'map-road'},
+  {key: 'points_low', label: 'Low points', fill: 'map-parcel-edge'},
+  {key: 'points_high', label: 'High points', fill: 'map-row-done'},
+  {key: 'cluster', label: 'Clusters', stroke: 'muted', width: 1},
   {key: 'row', label: 'Rows', stroke: 'map-row', width: 1.2},
   {key: 'row_done', label: 'Rows done', stroke: 'map-row-done', width: 2.4},
   {key: 'plan_row', label: 'Plan: rows', stroke: 'leg-row', width: 1.8},
@@ -29,9 +33,13 @@ export const kLayers: Layer[] = [
   {key: 'plan_transit', label: 'Plan: transit', stroke: 'leg-transit', width: 1.8},
   {key: 'plan_charge', label: 'Plan: to charge', stroke: 'leg-charge', width: 1.8, dash: [6, 4]},
   {key: 'driven', label: 'Driven', stroke: 'driven', width: 2.6},
+  {key: 'lane_side', label: 'Sides of the lane', stroke: 'leg-turn', width: 2.4},
+  {key: 'lane', label: 'Middle of the lane', stroke: 'leg-transit', width: 2.4, dash: [8, 5]},
+  {key: 'row_end', label: 'End of the row', stroke: 'bad', width: 3},
   {key: 'goal', label: 'Goals', fill: 'map-goal', stroke: 'map-goal-edge', width: 1.2},
   {key: 'gate', label: 'Gates', stroke: 'map-gate', mark: 'square'},
   {key: 'poi', label: 'Places', stroke: 'map-poi', mark: 'circle'},
+  {key: 'sensor', label: 'Vehicle', stroke: 'map-poi', mark: 'circle'},
   {key: 'charger', label: 'Chargers', stroke: 'leg-charge', mark: 'bolt'},
   {key: 'near_agent', label: 'Near-collision, the agent\u2019s doing', stroke: 'near-agent', mark: 'diamond'},
   {key: 'near_robot', label: 'Near-collision, the robot\u2019s doing', stroke: 'near-robot', mark: 'diamond'},
@@ -90,6 +98,8 @@ export function lines_of(feature: Feature): [number, number][][] {
   switch (feature.type) {
     case 'Point':
       return [[feature.coordinates as [number, number]]];
+    case 'MultiPoint':
+      return (feature.coordinates as [number, number][]).map((position) => [position]);
     case 'LineString':
       return [feature.coordinates as [number, number][]];
     case 'Polygon':

@@ -12,7 +12,7 @@ import {fixed, number} from './format';
 import {Layer, LayerSet, lines_of} from './layers';
 import {legend} from './legend';
 import {LegOf, Link} from './link';
-import {ColorBar, Labels, coordinates_text, make_path, paint_color_bars, paint_dot, paint_layer, paint_mark, paint_north,
+import {ColorBar, Labels, coordinates_text, make_path, paint_color_bars, paint_dot, paint_direction, paint_layer, paint_mark,
         paint_scale_bar} from './map_paint';
 import {duration, motion_at, plays} from './motion';
 import {Moving} from './moving';
@@ -225,7 +225,7 @@ export class MapView {
   private hover(px: number, py: number): void {
     const t = this.transform();
     const [x, y] = this.view.to_ground((px - t.x) / t.k, (py - t.y) / t.k);
-    this.readout.textContent = coordinates_text(x, y);
+    this.readout.textContent = coordinates_text(x, y, this.scene.in_base);
     const found = this.nearest_of_all(x, y);
     this.link.set('cursor', found ? {s: this.vehicles[found.vehicle]!.series.s_m[found.sample]!, vehicle: found.vehicle} : null);
     this.tip.hidden = !found;
@@ -277,7 +277,7 @@ export class MapView {
     this.paint_marks(context, shown, theme);
     const {clientWidth: width, clientHeight: height} = this.ground;
     paint_scale_bar(context, height, this.scale(), theme);
-    paint_north(context, theme);
+    paint_direction(context, this.scene.in_base ? 'ahead' : 'north', theme);
     paint_color_bars(context, width, height, this.color_bars(shown, theme), theme);
   }
 

@@ -13,12 +13,19 @@ export function font(size: number, weight = 400): string {
   return `${weight} ${size}px ${kFont}`;
 }
 
+const kPointSize = 0.07; // of the points of a scan [m]
+
 /// The outline of features in ground coordinates relative to `origin`.
 export function make_path(features: Feature[], origin: Position): Path2D {
   const path = new Path2D();
   for (const feature of features) {
     if (feature.type === 'Point') continue;
     for (const line of lines_of(feature)) {
+      if (feature.type === 'MultiPoint') {
+        const [x, y] = line[0]!;
+        path.rect(x - origin[0] - kPointSize / 2, y - origin[1] - kPointSize / 2, kPointSize, kPointSize);
+        continue;
+      }
       line.forEach(([x, y], i) => i ? path.lineTo(x - origin[0], y - origin[1])
                                     : path.moveTo(x - origin[0], y - origin[1]));
       if (feature.type === 'Polygon') path.closePath();
@@ -111,11 +118,13 @@ export function paint_scale_bar(context: CanvasRenderingContext2D, height: numbe
   haloed(context, metres >= 1000 ? `${number(metres / 1000)} km` : `${number(metres)} m`, 22, y - 10, theme);
 }
 
-export function paint_north(context: CanvasRenderingContext2D, theme: Theme): void {
+/// An arrow to the north of the map, or to where the vehicle of a scan heads.
+export function paint_direction(context: CanvasRenderingContext2D, to: 'north'|'ahead', theme: Theme): void {
   const [x, y] = [26, 28];
+  const outline = [[0, -13], [6, 5], [0, 1], [-6, 5]].map(([dx, dy]) => to === 'north' ? [dx!, dy!] : [-dy!, dx!]);
   context.fillStyle = theme.get('text');
   context.beginPath();
-  [[0, -13], [6, 5], [0, 1], [-6, 5]].forEach(([dx, dy]) => context.lineTo(x + dx!, y + dy!));
+  outline.forEach(([dx, dy]) => context.lineTo(x + dx!, y + dy!));
   context.closePath();
   context.lineWidth = 3;
   context.strokeStyle = theme.get('map-ground');
@@ -123,7 +132,7 @@ export function paint_north(context: CanvasRenderingContext2D, theme: Theme): vo
   context.fill();
   context.textAlign = 'center';
   context.font = font(11, 600);
-  haloed(context, 'N', x, y + 14, theme);
+  haloed(context, to === 'north' ? 'N' : 'ahead', x, y + 14, theme);
   context.textAlign = 'left';
 }
 
@@ -176,6 +185,7 @@ export function paint_dot(context: CanvasRenderingContext2D, x: number, y: numbe
   context.stroke();
 }
 
-export function coordinates_text(x: number, y: number): string {
+export function coordinates_text(x: number, y: number, in_base = false): string {
+  if (in_base) return `${fixed(x, 1)} m ahead   ${fixed(y, 1)} m left`;
   return `E ${fixed(x, 1)} m   N ${fixed(y, 1)} m`;
 }

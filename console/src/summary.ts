@@ -15,7 +15,7 @@ function status_class(status: string): string {
 }
 
 export function page_head(report: Report, theme_button: HTMLElement): HTMLElement {
-  const kinds = {plan: 'Plan', run: 'Run', study: 'Study'};
+  const kinds = {plan: 'Plan', run: 'Run', study: 'Study', scan: 'Scan'};
   const fact = (name: string, value: string) => element('div', {}, element('dt', {}, name), element('dd', {}, value));
   return element('header', {class: 'page-head'},
       element('div', {class: 'page-title'},

@@ -10,14 +10,14 @@ export interface Tile {
   hint?: string;
 }
 
-export type Position = [number, number]; // [m] east, north of the farm's origin
+export type Position = [number, number]; // [m] east, north of the farm's origin; of a scan: ahead, to the left
 export type LegKind = 'row' | 'turn' | 'transit' | 'task' | 'charge';
 
 export interface Feature {
   kind: string; // a key of kLayers in layers.ts, or any other word (drawn in a neutral way)
   id?: string;
   name?: string;
-  type: 'Polygon' | 'LineString' | 'Point';
+  type: 'Polygon' | 'LineString' | 'Point' | 'MultiPoint';
   coordinates: Position | Position[] | Position[][];
   vehicle?: number; // of Report.vehicles
   leg?: number;
@@ -111,6 +111,7 @@ export interface PlotData {
 
 /// What a map shows, and plays if the vehicles' series have times.
 export interface Scene {
+  in_base?: boolean; // a vehicle's surroundings: x ahead, y to its left
   map: {features: Feature[]};
   vehicles: Vehicle[];
   terrain?: Terrain;
@@ -126,7 +127,7 @@ export interface Episode {
 
 export interface Report extends Scene {
   title: string;
-  kind: 'plan' | 'run' | 'study';
+  kind: 'plan' | 'run' | 'study' | 'scan';
   status: string;
   version: string;
   seed: number;
