@@ -26,6 +26,23 @@ nlohmann::ordered_json encounters(const EncounterMetrics& e) {
   return json;
 }
 
+nlohmann::ordered_json rows_seen(const RowSightMetrics& seen) {
+  return {{"scans", seen.scans},
+          {"valid_ratio", seen.valid_ratio()},
+          {"mae_m", seen.mae_m()},
+          {"max_m", seen.largest_m},
+          {"blind_m", seen.blind_m}};
+}
+
+// A line of text, if rows were driven by what the lidar saw.
+std::string rows_seen_text(const RowSightMetrics& seen) {
+  if (seen.scans == 0) return "";
+  return fmt::format(
+      "rows seen  in {:.1f} % of {} scans; {:.3f} m off in the mean, {:.3f} m at most; blind for "
+      "{:.1f} m at most\n",
+      100.0 * seen.valid_ratio(), seen.scans, seen.mae_m(), seen.largest_m, seen.blind_m);
+}
+
 // A line of text, if anybody was about.
 std::string encounter_text(const FleetRun& run) {
   if (run.agents.empty()) return "";
@@ -90,6 +107,7 @@ std::string metrics_json(const FleetRun& run, const std::vector<VehiclePlan>& pl
                                      {"replans", m.replans},
                                      {"failed_replans", m.failed_replans},
                                      {"encounters", encounters(m.encounters)},
+                                     {"rows_seen", rows_seen(m.rows_seen)},
                                      {"vehicles", vehicles},
                                      {"headland",
                                       {{"version", stamp.version},
@@ -130,8 +148,8 @@ std::string run_text(const FleetRun& run, double real_time_factor) {
       m.completed ? "finished" : "NOT finished: ", m.reason, m.rows_done, m.rows_total,
       m.visits_total > 0 ? fmt::format(", visits {} of {}", m.visits_done, m.visits_total) : "",
       1e3 * m.tracking.row_rms_m, 1e3 * m.tracking.turn_rms_m, 1e3 * m.tracking.max_m,
-      m.energy_j / 3.6e6, 100.0 * m.min_soc, encounter_text(run), duration_text(m.duration_s),
-      real_time_factor);
+      m.energy_j / 3.6e6, 100.0 * m.min_soc, encounter_text(run) + rows_seen_text(m.rows_seen),
+      duration_text(m.duration_s), real_time_factor);
 }
 
 }  // namespace headland::apps

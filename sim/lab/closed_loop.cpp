@@ -83,13 +83,18 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
     if (!factory) return tl::unexpected<Error>(factory.error());
     predictor = std::move(*factory);
   }
+  std::optional<LidarScene> scene;
+  if (config.perception.enabled) {
+    scene = LidarScene::orchard(farm, ground, plants_of(config.perception.crop), config.seed);
+  }
   ChargerSlots slots(farm);
   std::vector<PlanDriver> drivers;
   drivers.reserve(plans.size());
   double total = 0.0;
   for (std::size_t v = 0; v < plans.size(); ++v) {
     drivers.emplace_back(static_cast<int>(v), plans[v], visits, farm, ground, config, slots,
-                         others ? &others->obstacles : nullptr, predictor, hooks);
+                         others ? &others->obstacles : nullptr, predictor,
+                         scene ? &*scene : nullptr, hooks);
     total += drivers.back().total_length();
   }
   const auto all_done = [&] {

@@ -12,9 +12,10 @@
 #include "core/world/ground.hpp"
 #include "global_planner/mission/mission_plan.hpp"
 #include "global_planner/mission/rest_of_mission.hpp"
+#include "sim/lab/metrics.hpp"
 #include "sim/lab/run/field_agents.hpp"
 #include "sim/lab/run/local_layer.hpp"
-#include "sim/lab/metrics.hpp"
+#include "sim/lab/run/row_sight.hpp"
 #include "sim/lab/trackers.hpp"
 #include "sim/simulated_vehicle.hpp"
 
@@ -32,6 +33,7 @@ struct SimulationConfig {
   ControlConfig control;
   FieldAgentsConfig agents;
   LocalLayerConfig local;
+  PerceptionConfig perception;
 
   template <class V>
   void visit(V& v) {
@@ -48,6 +50,7 @@ struct SimulationConfig {
     v("control", control, "The trackers");
     v("agents", agents, "People and animals about; none: the local layer is not needed");
     v("local", local, "The local layer, where there are agents");
+    v("perception", perception, "What the vehicles' lidars see");
   }
 };
 
@@ -89,6 +92,7 @@ struct RunMetrics {
   int wrong_gear_count = 0;  ///< ticks that drove against the path's gear
   int stale_plan_count = 0;  ///< ticks that drove by an older plan of the tracker
   EncounterMetrics encounters;
+  RowSightMetrics rows_seen;
   int replans = 0;         ///< of the rest of the mission, as the reserve was at risk
   int failed_replans = 0;  ///< ... to which there was no answer: the old plan was kept
 };

@@ -56,7 +56,8 @@ bool works(const VehiclePlan& plan) {
 PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits,
                        const Farm& farm, const Ground& ground, const SimulationConfig& config,
                        ChargerSlots& slots, const ClearanceMap* obstacles,
-                       const PredictorFactory& predictor, const RunHooks& hooks)
+                       const PredictorFactory& predictor, const LidarScene* scene,
+                       const RunHooks& hooks)
     : number_(number),
       given_(plan),
       plan_(plan),
@@ -75,6 +76,11 @@ PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Vi
     local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, predictor, *obstacles,
                                           config.seed + static_cast<std::uint64_t>(number),
                                           config.step_s);
+  }
+  if (scene != nullptr) {
+    sight_ =
+        std::make_unique<RowSight>(plan.vehicle, config.perception, *scene,
+                                   config.seed + static_cast<std::uint64_t>(number), config.step_s);
   }
   fit_to_legs();
   if (estimator_ != nullptr) estimator_->reset(vehicle_.truth(), 0.0);
@@ -156,11 +162,33 @@ void PlanDriver::follow(const Path& path, double time) {
 
 // What the vehicle knows of itself at `time` [s], at a stand too.
 void PlanDriver::observe(double time) {
-  if (estimator_ == nullptr) {
-    if (state_ == State::kDriving) known_ = vehicle_.measure();
-    return;
+  if (estimator_ != nullptr) {
+    known_ = estimator_->update(vehicle_.sense(time), told_, time).vehicle;
+  } else if (state_ == State::kDriving) {
+    known_ = vehicle_.measure();
   }
-  known_ = estimator_->update(vehicle_.sense(time), told_, time).vehicle;
+  if (sight_ != nullptr && state_ == State::kDriving) look_at_row(time);
+}
+
+// In a row the lidar tells where its middle is.
+void PlanDriver::look_at_row(double time) {
+  const int leg = reference_.path.at(reached_s_).leg;
+  if (leg != sight_leg_) {
+    sight_leg_ = leg;
+    sight_->begin_row(row_width(plan_.legs[static_cast<std::size_t>(leg)]));
+  }
+  sight_->step(time, vehicle_.truth(), reference_.path, reached_s_, known_);
+}
+
+// Between the plants beside a row; 0 where the leg is none.
+double PlanDriver::row_width(const PlanLeg& leg) const {
+  if (leg.kind != LegKind::kRow) return 0.0;
+  for (const RowRef& ref : farm_.all_rows()) {
+    if (farm_.row_name(ref) == leg.id) {
+      return farm_.row_parcels[static_cast<std::size_t>(ref.parcel)].row_spacing_m;
+    }
+  }
+  return 0.0;
 }
 
 void PlanDriver::drive(double time) {
@@ -417,6 +445,7 @@ void PlanDriver::give_up(const std::string& why, double time) {
 void PlanDriver::summarise() {
   RunMetrics& metrics = run_.metrics;
   if (local_ != nullptr) metrics.encounters = local_->metrics();
+  if (sight_ != nullptr) metrics.rows_seen = sight_->metrics();
   for (std::size_t i = 0; i < run_.driven.legs.size(); ++i) count_leg(i);
   for (const PlanLeg& leg : given_.legs) count_dropped(leg);
   count_rows({&given_, 1}, {&run_, 1}, metrics);

@@ -8,6 +8,7 @@
 
 #include "sim/lab/closed_loop.hpp"
 #include "sim/lab/run/charger_slots.hpp"
+#include "sim/lab/run/row_sight.hpp"
 
 namespace headland {
 
@@ -15,11 +16,12 @@ namespace headland {
 /// where there are agents. All that it is given must outlive it.
 class PlanDriver {
  public:
-  /// `obstacles`, `predictor`: for the local layer; null: nobody is about.
+  /// `obstacles`, `predictor`: for the local layer; null: nobody is about. `scene`: what the lidar
+  /// sees; null: rows are driven by the map.
   PlanDriver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits,
              const Farm& farm, const Ground& ground, const SimulationConfig& config,
              ChargerSlots& slots, const ClearanceMap* obstacles, const PredictorFactory& predictor,
-             const RunHooks& hooks);
+             const LidarScene* scene, const RunHooks& hooks);
 
   bool done() const { return state_ == State::kDone; }
   /// Of the driven length [m].
@@ -44,6 +46,8 @@ class PlanDriver {
   void begin_stage(double time);
   void follow(const Path& path, double time);
   void observe(double time);
+  void look_at_row(double time);
+  double row_width(const PlanLeg& leg) const;
   void drive(double time);
   LocalGoal local_goal() const;
   ArbiterView local_view(double time);
@@ -76,6 +80,8 @@ class PlanDriver {
   std::unique_ptr<Tracker> tracker_;
   std::unique_ptr<Estimator> estimator_;
   std::unique_ptr<LocalLayer> local_;  // null: nobody is about
+  std::unique_ptr<RowSight> sight_;    // null: rows are driven by the map
+  int sight_leg_ = -1;                 // the row that is looked at
   const RunHooks& hooks_;
   std::span<const Agent> agents_;
   VehicleEstimate known_;

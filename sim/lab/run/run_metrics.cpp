@@ -76,6 +76,7 @@ RunMetrics fleet_metrics(const std::vector<VehiclePlan>& plans, const std::vecto
     all.replans += one.replans;
     all.failed_replans += one.failed_replans;
     add(one.encounters, all.encounters);
+    all.rows_seen.add(one.rows_seen);
   }
   count_rows(plans, runs, all);
   all.tracking = fleet_tracking(runs);
