@@ -23,7 +23,7 @@ struct OrchardConfig {
   double canopy_low_m = 0.7;
   double canopy_high_m = 2.0;
   double canopy_half_width_m = 0.2;
-  double leaf_area_density_1pm = 1.2;
+  double leaf_area_density_1pm = 1.0;
   double branch_area_density_1pm = 0.7;
   double crown_ratio = 0.3;
   double missing_ratio = 0.05;

@@ -13,7 +13,7 @@ constexpr double kOutline = 0.4;    // length over which the canopy keeps its wi
 constexpr double kNarrowest = 0.5;  // width of the canopy at its thinnest, over the full one
 constexpr double kThickest = 4.0;   // densest clump over the mean
 constexpr double kInGround = -0.2;  // where trunks and posts begin [m]
-constexpr int kTilePoint = 40;      // what a point of a scan adds to its voxel: 2 m2/m3
+constexpr int kTilePoint = 12;      // what a point of a scan adds to its voxel, in density steps
 
 const Station& at(const std::vector<Station>& row, double s) {
   const double index = std::round((s - row.front().s) / kStep);
