@@ -14,6 +14,7 @@ constexpr int kConfirmingSights = 2;     // ... by so many sights in these
 constexpr double kVisible = 0.5;         // share of the width: it ought to be seen
 constexpr double kLeastDetection = 0.1;  // of those hidden: some are seen nevertheless
 constexpr double kBehind = 0.3;          // a body's shadow begins so far behind its far side [m]
+constexpr double kBesides = 0.3;         // of what is seen of a body, there may be more of it [m]
 constexpr double kSameBody = 0.3;        // no two bodies are nearer to each other [m]
 constexpr double kGrow = 0.2;            // low-pass of a body's size, per scan, ...
 constexpr double kShrink = 0.05;         // ... smaller, as what hides a part makes it smaller
@@ -39,10 +40,14 @@ AgentTrackerStatus AgentTracker::update(std::span<const Detection> detections,
   double dt = 0.0;
   const AgentTrackerStatus status = advance(time_s, dt);
   if (status == AgentTrackerStatus::kBadTime) return status;
-  for (TrackedAgent& track : tracks_) predict(track, dt, config_.motion);
+  for (TrackedAgent& track : tracks_) {
+    predict(track, dt, config_.motion);
+    if (track.absence > 0.0) track.state.tail<2>() *= std::exp(-dt / config_.slowing_s);
+  }
   take(detections);
   merged_->take_apart(tracks_, view.sensor, config_, detections_);
   cast_shadows(view);
+  doubt_parts(view);
   look(view);
   pair(true);
   pair(false);
@@ -80,6 +85,16 @@ void AgentTracker::cast_shadows(const SensorView& view) {
     const double depth = std::max(detection.along_m, detection.across_m);
     shadows_.push_back(
         shadow_of(view.sensor, detection.position, detection.across_m, 0.5 * depth + kBehind));
+  }
+}
+
+// Where something nearer hides a part of a body, what is seen of it says less about its centre.
+void AgentTracker::doubt_parts(const SensorView& view) {
+  for (Detection& detection : detections_) {
+    const double radius = 0.5 * detection.across_m + kBesides;
+    const double hidden = 1.0 - view.visible_share(detection.position, radius, shadows_);
+    const double noise = config_.part_noise_m * hidden;
+    detection.covariance += noise * noise * Eigen::Matrix2d::Identity();
   }
 }
 

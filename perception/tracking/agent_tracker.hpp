@@ -48,8 +48,10 @@ struct AgentTrackerConfig {
   double newcomer_m2 = 1000.0;
   int strong_points_count = 4;
   double visible_patience_s = 0.5;
-  double hidden_patience_s = 2.0;
+  double hidden_patience_s = 1.5;
   double lost_m = 1.5;
+  double slowing_s = 0.5;
+  double part_noise_m = 0.3;
   double class_weight = 0.2;
   double stale_s = 1.0;
 
@@ -72,6 +74,10 @@ struct AgentTrackerConfig {
       "... and who is hidden or out of range, after [s]");
     v("lost_m", lost_m, config::kPositive,
       "Given up when its position has this standard deviation [m]");
+    v("slowing_s", slowing_s, config::kPositive,
+      "Time constant at which those not seen are taken to slow down, as they turn or stop [s]");
+    v("part_noise_m", part_noise_m, config::kNonNegative,
+      "Standard deviation of the centre of a body that is hidden but for an edge [m]");
     v("class_weight", class_weight, config::kFraction,
       "How much of a scan's evidence for a class is new, as scans are alike");
     v("stale_s", stale_s, config::kPositive, "No agents so long after the last scan [s]");
@@ -117,6 +123,7 @@ class AgentTracker {
   AgentTrackerStatus advance(double time_s, double& dt);
   void take(std::span<const Detection> detections);
   void cast_shadows(const SensorView& view);
+  void doubt_parts(const SensorView& view);
   void look(const SensorView& view);
   void pair(bool strong);
   void correct_paired(double time_s);

@@ -32,7 +32,7 @@ struct Detection {
 struct BodyConfig {
   double near_quantile_ratio = 0.15;
   double deepest_m = 1.0;
-  double noise_m = 0.06;
+  double noise_m = 0.08;
   double noise_ratio = 0.006;
 
   template <class V>

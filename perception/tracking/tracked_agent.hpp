@@ -14,10 +14,10 @@ namespace headland {
 /// How far velocities wander, by class: the standard deviation per axis after one second of white
 /// acceleration [m/s].
 struct MotionConfig {
-  double person_mps = 0.8;
-  double livestock_mps = 0.8;
+  double person_mps = 1.0;
+  double livestock_mps = 1.0;
   double vehicle_mps = 1.0;
-  double other_mps = 0.8;
+  double other_mps = 1.0;
   double first_speed_mps = 1.5;
 
   template <class V>

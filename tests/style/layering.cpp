@@ -69,6 +69,7 @@ const std::vector<Library>& libraries() {
       {"coin", {"control/receding_horizon"}},
       {"Ip", {"control/receding_horizon"}},
       {"pcl/", {"perception"}},
+      {"opencv2/", {"perception"}},
       {"octomap/", {"perception"}},
       {"nanoflann", {"perception"}},
       {"dds/", {"fleet/dds"}},
