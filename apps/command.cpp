@@ -34,8 +34,9 @@ int report_error(const Error& error, const CommonOptions& options) {
   return code;
 }
 
-Result<config::Node> load_with_overrides(const CommonOptions& options) {
-  auto node = config::Node::load(options.file);
+namespace {
+
+Result<config::Node> with_overrides(Result<config::Node> node, const CommonOptions& options) {
   if (!node) return node;
   for (const std::string& assignment : options.set) {
     const auto equals = assignment.find('=');
@@ -48,6 +49,16 @@ Result<config::Node> load_with_overrides(const CommonOptions& options) {
     }
   }
   return node;
+}
+
+}  // namespace
+
+Result<config::Node> load_with_overrides(const CommonOptions& options) {
+  return with_overrides(config::Node::load(options.file), options);
+}
+
+Result<config::Node> overrides_only(const CommonOptions& options) {
+  return with_overrides(config::Node::parse("{}", "--set"), options);
 }
 
 Stamp make_stamp(std::uint64_t seed, std::string config_yaml) {

@@ -23,6 +23,7 @@ struct CommonOptions {
 int plan_command(const CommonOptions& options);
 int run_command(const CommonOptions& options, double realtime);
 int study_command(const CommonOptions& options, int jobs, int max_episodes);
+int perceive_command(const CommonOptions& options);
 int doctor_command(const CommonOptions& options);
 
 struct RouteOptions {
@@ -38,6 +39,8 @@ int report_error(const Error& error, const CommonOptions& options);
 
 /// Reads a YAML file and applies the `--set` overrides.
 Result<config::Node> load_with_overrides(const CommonOptions& options);
+/// The `--set` overrides alone, for commands whose file is no YAML.
+Result<config::Node> overrides_only(const CommonOptions& options);
 
 /// The configuration that was used, as text and as a hash.
 struct Stamp {

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
       "  headland plan config/missions/girona_orchard.yaml --out out/plan\n"
       "  headland run config/missions/girona_orchard.yaml --set simulation.seed=7\n"
       "  headland study config/studies/ebs221.yaml\n"
+      "  headland perceive scan.pcd --set row_width_m=2.5\n"
       "  headland route kro124p.atsp --time-limit-s 20\n"
       "Exit codes: 0 done, 2 the input is wrong, 3 no feasible answer, 4 internal error");
   CommonOptions options;
@@ -91,6 +92,11 @@ int run(int argc, char** argv) {
     options.out = route_out;
     code = headland::apps::route_command(options, route_options);
   });
+
+  auto* perceive = app.add_subcommand(
+      "perceive", "Look at one lidar scan: ground, clusters, the row and its end");
+  add_common(perceive, options, "CLOUD", "Points: .pcd, .ply, or .bin as KITTI's");
+  perceive->callback([&] { code = headland::apps::perceive_command(options); });
 
   auto* doctor = app.add_subcommand("doctor", "Check the installation");
   doctor->add_flag("--json", options.json, "One JSON document on stdout and nothing else there");
