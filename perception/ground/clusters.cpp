@@ -2,6 +2,7 @@
 #include "perception/ground/clusters.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -10,12 +11,13 @@ namespace headland {
 namespace {
 
 constexpr int kBits = 21;
-constexpr std::int64_t kHalf = std::int64_t{1} << (kBits - 1);
+constexpr int kHalf = 1 << (kBits - 1);
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 constexpr int kReach = 2;  // cells: points two apart may be near, three apart may not
 
-std::uint64_t along(float scaled) {
-  return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(scaled)) + kHalf);
+std::uint64_t packed(const Eigen::Array3i& cell) {
+  return (static_cast<std::uint64_t>(cell.x()) << (2 * kBits)) |
+         (static_cast<std::uint64_t>(cell.y()) << kBits) | static_cast<std::uint64_t>(cell.z());
 }
 
 int z_of(std::uint64_t key) { return static_cast<int>(key & kMask); }
@@ -50,20 +52,22 @@ void ClusterFinder::sort_into_cells(std::span<const LidarPoint> points,
   const auto per_metre = static_cast<float>(std::sqrt(3.0) / config_.tolerance_m);
   entries_.clear();
   entries_.reserve(points.size());
+  Eigen::Array3i least = Eigen::Array3i::Constant(kHalf);
   for (int i = 0; i < std::ssize(points); ++i) {
     const auto index = static_cast<std::size_t>(i);
     if (!labels.empty() && labels[index] != GroundLabel::kObject) continue;
-    const Eigen::Vector3f scaled = points[index].position * per_metre;
-    if (!(scaled.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() < static_cast<float>(kHalf - kReach))) {
+    const Eigen::Array3f scaled = points[index].position.array() * per_metre;
+    if (!(scaled.abs().maxCoeff<Eigen::PropagateNaN>() < static_cast<float>(kHalf / 2 - kReach))) {
       continue;
     }
-    const std::uint64_t key =
-        (along(scaled.x()) << (2 * kBits)) | (along(scaled.y()) << kBits) | along(scaled.z());
-    entries_.push_back({key, i});
+    const Eigen::Array3i cell = scaled.floor().cast<int>();
+    least = least.min(cell);
+    entries_.push_back({packed(cell + kHalf / 2), i});
   }
-  std::sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    return a.key != b.key ? a.key < b.key : a.point < b.point;
-  });
+  // Counted from the lowest occupied cells, most numbers are short, and quick to sort by.
+  const std::uint64_t corner = packed(least + kHalf / 2 - kReach);
+  for (Entry& entry : entries_) entry.key -= corner;
+  sort_entries();
   cells_.clear();
   for (int i = 0; i < std::ssize(entries_); ++i) {
     const Entry& entry = entries_[static_cast<std::size_t>(i)];
@@ -73,6 +77,28 @@ void ClusterFinder::sort_into_cells(std::span<const LidarPoint> points,
     ++cell.count;
     cell.low = cell.low.cwiseMin(p);
     cell.high = cell.high.cwiseMax(p);
+  }
+}
+
+// By key, then point: by counting digits from the lowest up, leaving out those that are all zero.
+void ClusterFinder::sort_entries() {
+  constexpr int kDigit = 11;
+  std::uint64_t used = 0;
+  for (const Entry& entry : entries_) used |= entry.key;
+  sorted_.resize(entries_.size());
+  for (const int axis : {0, kBits, 2 * kBits}) {
+    for (int shift = axis; shift < axis + kBits; shift += kDigit) {
+      const int bits = std::min(kDigit, axis + kBits - shift);
+      const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+      if ((used >> shift & mask) == 0) continue;
+      std::array<int, (1 << kDigit) + 1> starts{};
+      for (const Entry& entry : entries_) ++starts[(entry.key >> shift & mask) + 1];
+      for (std::size_t i = 1; i < starts.size(); ++i) starts[i] += starts[i - 1];
+      for (const Entry& entry : entries_) {
+        sorted_[static_cast<std::size_t>(starts[entry.key >> shift & mask]++)] = entry;
+      }
+      entries_.swap(sorted_);
+    }
   }
 }
 
