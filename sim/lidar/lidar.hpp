@@ -28,7 +28,7 @@ struct LidarConfig {
   double view_end_deg = 180.0;
   double rate_hz = 10.0;
   double laser_interval_s = 1.73e-6;
-  int sub_rays_count = 5;
+  int sub_rays_count = 4;
   double divergence_rad = 0.003;
   ReturnMode return_mode = ReturnMode::kStrongest;
   double echo_gap_m = 0.4;

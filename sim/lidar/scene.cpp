@@ -169,10 +169,11 @@ LidarScene LidarScene::tiled(const RowLayout& layout, std::span<const CanopyStri
 }
 
 void LidarScene::set_agents(std::span<const Agent> agents) {
-  agents_.clear(world_->blocks());
+  agents_.assign(agents.begin(), agents.end());
+  bodies_.clear(world_->blocks());
   for (std::size_t i = 0; i < agents.size(); ++i) {
     for (const internal::Body& body : internal::bodies_of(agents[i], static_cast<int>(i))) {
-      world_->insert(body, agents_);
+      world_->insert(body, bodies_);
     }
   }
 }

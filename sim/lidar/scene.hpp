@@ -46,9 +46,10 @@ class LidarScene {
 
   /// Those who are there now, in place of those before. Agents that are not finite are left out.
   void set_agents(std::span<const Agent> agents);
+  const std::vector<Agent>& agents() const { return agents_; }
 
   /// What a ray meets first. About 1 us.
-  RayHit trace(const Ray& ray) const { return world_->trace(ray, agents_); }
+  RayHit trace(const Ray& ray) const { return world_->trace(ray, bodies_); }
 
   TerrainSample ground(const Point2& p_map) const { return world_->ground(p_map); }
   /// T_map_base of a vehicle that stands on the ground, tilted as the ground below it.
@@ -64,7 +65,8 @@ class LidarScene {
   std::shared_ptr<const internal::World> world_;  // shared by copies
   std::vector<Polyline> lines_;
   std::vector<Point2> plants_;
-  internal::BodyIndex agents_;
+  std::vector<Agent> agents_;
+  internal::BodyIndex bodies_;  // of the agents
 };
 
 }  // namespace headland

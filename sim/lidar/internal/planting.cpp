@@ -10,10 +10,10 @@ namespace {
 
 constexpr double kStep = 0.1;       // between stations [m]: half a voxel
 constexpr double kOutline = 0.4;    // length over which the canopy keeps its width [m]
-constexpr double kThickest = 3.0;   // densest voxel over the mean
-constexpr double kLeast = 0.05;     // share of the density in the thinnest voxel
+constexpr double kNarrowest = 0.5;  // width of the canopy at its thinnest, over the full one
+constexpr double kThickest = 4.0;   // densest clump over the mean
 constexpr double kInGround = -0.2;  // where trunks and posts begin [m]
-constexpr int kTilePoint = 40;      // what a point of a scan adds to its voxel: 2 m2/m3
+constexpr int kTilePoint = 12;      // what a point of a scan adds to its voxel, in density steps
 
 const Station& at(const std::vector<Station>& row, double s) {
   const double index = std::round((s - row.front().s) / kStep);
@@ -106,28 +106,42 @@ void Planter::set_wires(const Point2& from, const Point2& to) {
   }
 }
 
+// Leaves come in clumps of a voxel's size whose density is spread as an exponential about the mean.
+// Each place half a voxel from the next adds its share to the voxel that it lies in.
 void Planter::set_canopy(const std::vector<Station>& row) {
-  const double half_width = config_.canopy_half_width_m;
   const double step = 0.5 * World::kVoxel;
+  const int wide = static_cast<int>(std::ceil(2.0 * config_.canopy_half_width_m / step));
+  const int high =
+      static_cast<int>(std::ceil((config_.canopy_high_m - config_.canopy_low_m) / step));
+  std::vector<double> clumps(static_cast<std::size_t>((wide / 2 + 1) * (high / 2 + 1)));
   double outline = 1.0;
   double outline_end = 0.0;
-  for (const Station& station : row) {
+  for (std::size_t k = 0; k < row.size(); ++k) {
+    const Station& station = row[k];
     if (station.s >= outline_end) {
-      outline = leaves_.uniform(0.6, 1.0);
+      outline = leaves_.uniform(kNarrowest, 1.0);
       outline_end += kOutline;
     }
-    for (double across = -half_width; across <= half_width; across += step) {
+    if (k % 2 == 0) {
+      for (double& clump : clumps) {
+        clump = std::min(kThickest, -std::log(1.0 - leaves_.uniform()));
+      }
+    }
+    for (int i = 0; i < wide; ++i) {
+      const double across = (i + 0.5) * step - config_.canopy_half_width_m;
       const Point2 p = station.position + across * station.left;
-      for (double z = config_.canopy_low_m + 0.5 * step; z < config_.canopy_high_m; z += step) {
+      for (int j = 0; j < high; ++j) {
+        const double z = config_.canopy_low_m + (j + 0.5) * step;
         const double mean = density(station.s, across, z, outline);
-        if (mean > 0.0) fill(p, z, mean);
+        if (mean <= 0.0) continue;
+        fill(p, z, mean * clumps[static_cast<std::size_t>(i / 2 * (high / 2 + 1) + j / 2)] / 8.0);
       }
     }
   }
 }
 
 // Mean density of the canopy at a place.
-double Planter::density(double s, double across, double z, double outline) {
+double Planter::density(double s, double across, double z, double outline) const {
   const double slots = s / config_.trunk_pitch_m;
   const auto slot = static_cast<std::size_t>(slots);
   if (slot < alive_.size() && !alive_[slot]) return 0.0;
@@ -140,13 +154,12 @@ double Planter::density(double s, double across, double z, double outline) {
   return (config_.leaf_area_density_1pm + wood) * (1.0 - config_.crown_ratio * apart * apart);
 }
 
-// Leaves come in clumps: the density of a voxel is spread as an exponential about its mean.
+// Adds to the density of a voxel, in its steps, rounded by chance so that the mean stays.
 void Planter::fill(const Point2& p, double z, double area_density) {
   std::uint8_t* voxel = world_.voxel(p, z);
-  if (voxel == nullptr || *voxel != 0) return;
-  const double clump = std::min(kThickest, -std::log(1.0 - leaves_.uniform()));
-  const double stored = area_density * std::max(kLeast, clump) / World::kDensityStep;
-  *voxel = static_cast<std::uint8_t>(std::clamp(std::round(stored), 1.0, 255.0));
+  if (voxel == nullptr) return;
+  const double stored = *voxel + area_density / World::kDensityStep + leaves_.uniform();
+  *voxel = static_cast<std::uint8_t>(std::min(stored, 255.0));
 }
 
 void Planter::tile(const Polyline& line, std::span<const std::vector<Eigen::Vector3f>> strips) {

@@ -38,7 +38,7 @@ class Planter {
   void set_posts(const std::vector<Station>& row);
   void set_wires(const Point2& from, const Point2& to);
   void set_canopy(const std::vector<Station>& row);
-  double density(double s, double across, double z, double outline);
+  double density(double s, double across, double z, double outline) const;
   void fill(const Point2& p, double z, double area_density);
 
   World& world_;

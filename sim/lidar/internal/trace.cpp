@@ -8,6 +8,8 @@
 namespace headland::internal {
 namespace {
 
+// Longest step through leaves [m]: across a block, one for each voxel.
+constexpr double kMarch = World::kVoxel;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Optical depth per metre of a voxel by its stored density.
@@ -197,7 +199,7 @@ void World::hit_bodies(const Ray& ray, const BodyIndex& index, Piece& piece, Ray
 }
 
 // Leaves stop a ray where the optical depth passed, G times leaf area density times the way,
-// reaches the ray's.
+// reaches the ray's. Densities are taken in the middles of even steps.
 bool World::hit_porous(const Piece& piece, double& depth, RayHit& hit) const {
   const std::int32_t volume = volume_[static_cast<std::size_t>(block(piece.column, piece.row))];
   const double top = volume >= 0 ? layers_ * kVoxel : grass_top_;
@@ -211,67 +213,40 @@ bool World::hit_porous(const Piece& piece, double& depth, RayHit& hit) const {
   } else if (piece.start.z() > top) {
     return false;
   }
-  if (!(t < end) || depth == kInfinity) return false;
+  if (!(end - t > 1e-9) || depth == kInfinity) return false;
 
+  const double steps = std::max(1.0, std::ceil((end - t) / kMarch - 1e-6));
+  const double length = (end - t) / steps;
   const Eigen::Vector3d corner(origin_.x() + piece.column * kBlock,
                                origin_.y() + piece.row * kBlock, 0.0);
-  const Eigen::Vector3d place = (piece.start + t * piece.step - corner) / kVoxel;
-  const Eigen::Vector3d speed = piece.step / kVoxel;
-  const auto cell = [](double value, int count) {
-    return std::clamp(static_cast<int>(std::floor(value)), 0, count - 1);
-  };
-  int column = cell(place.x(), kSide);
-  int row = cell(place.y(), kSide);
-  int layer = cell(place.z(), layers_);
-  Walk x(place.x(), column, speed.x(), t);
-  Walk y(place.y(), row, speed.y(), t);
-  Walk z(place.z(), layer, speed.z(), t);
-  while (t < end) {
-    const double next = std::min({x.next, y.next, z.next, end});
+  Eigen::Vector3d place = (piece.start + (t + 0.5 * length) * piece.step - corner) / kVoxel;
+  const Eigen::Vector3d step = piece.step * (length / kVoxel);
+  const double grass_top = grass_top_ / kVoxel;
+  for (int i = 0; i < static_cast<int>(steps); ++i, t += length, place += step) {
+    const int column = std::clamp(static_cast<int>(place.x()), 0, kSide - 1);
+    const int row = std::clamp(static_cast<int>(place.y()), 0, kSide - 1);
+    double rate = 0.0;  // optical depth per metre
     if (volume >= 0) {
-      const std::uint8_t stored =
-          voxels_[static_cast<std::size_t>(((volume + layer) * kSide + row) * kSide + column)];
-      const double rate = kRate * stored;
-      if (rate * (next - t) >= depth) {
-        hit = {t + depth / rate, Surface::kCanopy, 1.0, -1};
-        return true;
-      }
-      depth -= rate * std::max(0.0, next - t);
+      const int layer = std::clamp(static_cast<int>(place.z()), 0, layers_ - 1);
+      rate = kRate *
+             voxels_[static_cast<std::size_t>(((volume + layer) * kSide + row) * kSide + column)];
     }
-    if (layer == 0 && grass_top_ > 0.0 && hit_grass(piece, t, next, column, row, depth, hit)) {
-      return true;
+    const bool grass = place.z() < grass_top && kVoxel * place.z() < grass_at(piece, column, row);
+    if (grass) rate += grass_rate_;
+    if (rate * length < depth) {
+      depth -= rate * length;
+      continue;
     }
-    t = next;
-    Walk& crossed = x.next <= y.next ? (x.next <= z.next ? x : z) : (y.next <= z.next ? y : z);
-    int& index = &crossed == &x ? column : &crossed == &y ? row : layer;
-    crossed.advance(index);
-    if (column < 0 || column >= kSide || row < 0 || row >= kSide || layer < 0 || layer >= layers_) {
-      return false;
-    }
+    hit = {t + depth / rate, grass ? Surface::kGrass : Surface::kCanopy, 1.0, -1};
+    return true;
   }
   return false;
 }
 
-bool World::hit_grass(const Piece& piece, double begin, double end, int column, int row,
-                      double& depth, RayHit& hit) const {
+double World::grass_at(const Piece& piece, int column, int row) const {
   const int x = (piece.column * kSide + column) % kGrassSide;
   const int y = (piece.row * kSide + row) % kGrassSide;
-  const double top = grass_[static_cast<std::size_t>(y * kGrassSide + x)];
-  const double slope = piece.step.z();
-  if (slope < 0.0) {
-    begin = std::max(begin, (top - piece.start.z()) / slope);
-  } else if (slope > 0.0) {
-    end = std::min(end, (top - piece.start.z()) / slope);
-  } else if (piece.start.z() > top) {
-    return false;
-  }
-  if (!(begin < end)) return false;
-  if (grass_rate_ * (end - begin) >= depth) {
-    hit = {begin + depth / grass_rate_, Surface::kGrass, 1.0, -1};
-    return true;
-  }
-  depth -= grass_rate_ * (end - begin);
-  return false;
+  return static_cast<double>(grass_[static_cast<std::size_t>(y * kGrassSide + x)]);
 }
 
 }  // namespace headland::internal

@@ -84,8 +84,7 @@ class World {
               RayHit& hit) const;
   void hit_bodies(const Ray& ray, const BodyIndex& index, Piece& piece, RayHit& hit) const;
   bool hit_porous(const Piece& piece, double& depth, RayHit& hit) const;
-  bool hit_grass(const Piece& piece, double begin, double end, int column, int row, double& depth,
-                 RayHit& hit) const;
+  double grass_at(const Piece& piece, int column, int row) const;
 
   Point2 origin_{0.0, 0.0};
   int columns_ = 0;
