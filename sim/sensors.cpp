@@ -59,12 +59,34 @@ void Sensors::Channel::deliver(double now, std::vector<Measurement>& arrived) {
   under_way_.erase(under_way_.begin(), end);
 }
 
+Sensors::WorseFix::WorseFix(const WorseFixConfig& config, std::uint64_t seed, std::string_view name)
+    : config_(config), random_(seed, name) {}
+
+void Sensors::WorseFix::plan(double from) {
+  begin_ = from - std::log(1.0 - random_.uniform()) / config_.rate_hz;
+  error_.x() = config_.error_m * random_.normal();
+  error_.y() = config_.error_m * random_.normal();
+}
+
+std::optional<Point2> Sensors::WorseFix::error(double now) {
+  if (config_.rate_hz <= 0.0 || config_.duration_s <= 0.0) return std::nullopt;
+  if (!started_) {
+    started_ = true;
+    plan(now);
+  }
+  while (now >= begin_ + config_.duration_s) plan(begin_ + config_.duration_s);
+  return now >= begin_ ? std::optional<Point2>(error_) : std::nullopt;
+}
+
 Sensors::Sensors(const Vehicle& vehicle, const SensorConfig& config, std::uint64_t seed)
     : ackermann_(vehicle.steering == Steering::kAckermann),
       track_width_m_(vehicle.track_width_m),
       config_(config),
       fix_noise_(seed, "sim/sensors"),
       gnss_(config.gnss, seed, "sim/sensors/gnss"),
+      float_fix_(config.gnss.float_fix, seed, "sim/sensors/gnss/float"),
+      single_fix_(config.gnss.single_fix, seed, "sim/sensors/gnss/single"),
+      multipath_(seed, "sim/sensors/gnss/multipath"),
       heading_(config.heading, seed, "sim/sensors/heading"),
       wheel_(config.wheel, seed, "sim/sensors/wheel"),
       steering_(config.steering, seed, "sim/sensors/steering"),
@@ -92,10 +114,25 @@ void Sensors::read_position(const VehicleState& truth, double now) {
     const double within = gnss_.noise().uniform(-accuracy, accuracy);
     return within + config_.gnss.noise_m * gnss_.noise().normal();
   };
-  const double x = truth.pose.x + error();
-  const double y = truth.pose.y + error();
+  double x = truth.pose.x + error();
+  double y = truth.pose.y + error();
+  double deviation = std::hypot(accuracy / std::sqrt(3.0), config_.gnss.noise_m);
+  for (WorseFix* fix : {&float_fix_, &single_fix_}) {
+    const std::optional<Point2> worse = fix->error(now);
+    if (!worse) continue;
+    x += worse->x();
+    y += worse->y();
+    deviation = std::hypot(deviation, fix->deviation());
+  }
+  const bool astray = multipath_.uniform() < config_.gnss.multipath_probability;
+  const double far =
+      multipath_.uniform(config_.gnss.multipath_low_m, config_.gnss.multipath_high_m);
+  const double bearing = multipath_.uniform(-kPi, kPi);
+  if (astray) {
+    x += far * std::cos(bearing);
+    y += far * std::sin(bearing);
+  }
   if (gnss_.lost(now)) return;
-  const double deviation = std::hypot(accuracy / std::sqrt(3.0), config_.gnss.noise_m);
   gnss_.send({now, MeasurementKind::kPosition, {x, y}, weighted(deviation)});
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -38,15 +39,42 @@ struct ReadingConfig {
   }
 };
 
-/// Position of base in the map.
+/// Spells of worse fixes: a receiver that has lost its fixed ambiguities, or its corrections.
+struct WorseFixConfig {
+  double rate_hz = 0.0;
+  double duration_s = 0.0;
+  double error_m = 0.0;
+
+  template <class V>
+  void visit(V& v) {
+    v("rate_hz", rate_hz, config::Range{0.0, 100.0}, "Spells per second of good fixes [Hz]");
+    v("duration_s", duration_s, config::Range{0.0, 3600.0}, "Of a spell [s]");
+    v("error_m", error_m, config::kNonNegative,
+      "Standard deviation in x and in y of the error that a spell keeps; readings own up to it "
+      "[m]");
+  }
+};
+
+/// Position of base in the map. Good fixes are those with fixed ambiguities.
 struct GnssConfig : ReadingConfig {
   double noise_m = 0.0;
+  WorseFixConfig float_fix{0.0, 0.0, 0.3};
+  WorseFixConfig single_fix{0.0, 0.0, 1.5};
+  double multipath_probability = 0.0;
+  double multipath_low_m = 5.0;
+  double multipath_high_m = 40.0;
 
   template <class V>
   void visit(V& v) {
     ReadingConfig::visit(v);
     v("noise_m", noise_m, config::kNonNegative,
       "Standard deviation of white noise in x and in y, beside position_accuracy_m [m]");
+    v("float_fix", float_fix, "Spells without fixed ambiguities");
+    v("single_fix", single_fix, "Spells without corrections");
+    v("multipath_probability", multipath_probability, config::kFraction,
+      "Of a reading to be far off without owning up to it");
+    v("multipath_low_m", multipath_low_m, config::kNonNegative, "It is off by at least this [m]");
+    v("multipath_high_m", multipath_high_m, config::kNonNegative, "It is off by at most this [m]");
   }
 };
 
@@ -175,6 +203,24 @@ class Sensors {
     std::vector<Measurement> under_way_;  // in the order of their time
   };
 
+  // Spells of worse fixes, one after the other.
+  class WorseFix {
+   public:
+    WorseFix(const WorseFixConfig& config, std::uint64_t seed, std::string_view name);
+    // Of a reading at `now`, which never decreases: its error [m] in a spell, else nullopt.
+    std::optional<Point2> error(double now);
+    double deviation() const { return config_.error_m; }
+
+   private:
+    void plan(double from);  // the next spell after that time
+
+    WorseFixConfig config_;
+    RandomStream random_;
+    bool started_ = false;
+    double begin_ = 0.0;
+    Point2 error_{0.0, 0.0};
+  };
+
   void read_position(const VehicleState& truth, double now);
   void read_heading(const VehicleState& truth, double now);
   void read_wheels(const VehicleState& truth, double now);
@@ -186,6 +232,9 @@ class Sensors {
   SensorConfig config_;
   RandomStream fix_noise_;
   Channel gnss_;
+  WorseFix float_fix_;
+  WorseFix single_fix_;
+  RandomStream multipath_;
   Channel heading_;
   Channel wheel_;
   Channel steering_;

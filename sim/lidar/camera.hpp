@@ -20,7 +20,7 @@ struct CameraConfig {
   int height_px = 720;
   double view_deg = 90.0;
   double found_probability = 0.95;
-  double found_half_px = 25.0;
+  int found_half_px = 25;
   double least_visible_ratio = 0.25;
   double jitter_ratio = 0.05;
   double confusion_probability = 0.08;
@@ -33,7 +33,7 @@ struct CameraConfig {
     v("view_deg", view_deg, config::Range{1.0, 170.0}, "Width of the view [deg]");
     v("found_probability", found_probability, config::kFraction,
       "Of someone near and in full view to be found in an image");
-    v("found_half_px", found_half_px, config::kNonNegative,
+    v("found_half_px", found_half_px, config::Range{0, 10000},
       "At this height on the image only half of them are found [px]");
     v("least_visible_ratio", least_visible_ratio, config::Range{0.0, 0.99},
       "Someone of whom no more than this share is in view is never found");

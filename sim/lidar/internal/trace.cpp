@@ -92,29 +92,35 @@ bool near(const Body& body, double low, double high, const Point2& start, const 
 
 }  // namespace
 
-RayHit World::trace(const Ray& ray, const BodyIndex& moving) const {
+// The part of the ray above the grid and not yet above all that stands; empty: nothing is met.
+std::optional<World::Stretch> World::stretch(const Ray& ray) const {
   const Eigen::Vector3d& o = ray.origin;
   const Eigen::Vector3d& d = ray.direction;
-  RayHit hit;
-  if (!(o.allFinite() && d.allFinite())) return hit;
-  // The part of the ray above the grid.
-  double t = 0.0;
-  double last = ray.max_range;
+  if (!(o.allFinite() && d.allFinite())) return std::nullopt;
+  Stretch way{0.0, ray.max_range};
   const Point2 size(columns_ * kBlock, rows_ * kBlock);
   for (int i = 0; i < 2; ++i) {
     const double low = origin_[i] - o[i];
     const double high = low + size[i];
     if (d[i] == 0.0) {
-      if (low > 0.0 || high < 0.0) return hit;
+      if (low > 0.0 || high < 0.0) return std::nullopt;
       continue;
     }
-    t = std::max(t, std::min(low / d[i], high / d[i]));
-    last = std::min(last, std::max(low / d[i], high / d[i]));
+    way.begin = std::max(way.begin, std::min(low / d[i], high / d[i]));
+    way.end = std::min(way.end, std::max(low / d[i], high / d[i]));
   }
-  if (!(t < last)) return hit;
-  // Above all that stands, and rising.
-  if (d.z() > 0.0) last = std::min(last, (highest_ - o.z()) / d.z());
+  if (d.z() > 0.0) way.end = std::min(way.end, (highest_ - o.z()) / d.z());
+  if (!(way.begin < way.end)) return std::nullopt;
+  return way;
+}
 
+RayHit World::trace(const Ray& ray, const BodyIndex& moving) const {
+  const Eigen::Vector3d& o = ray.origin;
+  const Eigen::Vector3d& d = ray.direction;
+  RayHit hit;
+  const std::optional<Stretch> way = stretch(ray);
+  if (!way) return hit;
+  double t = way->begin;
   const Point2 place = (o.head<2>() + t * d.head<2>() - origin_) / kBlock;
   Piece piece;
   piece.column = std::clamp(static_cast<int>(std::floor(place.x())), 0, columns_ - 1);
@@ -129,10 +135,10 @@ RayHit World::trace(const Ray& ray, const BodyIndex& moving) const {
   double height = above_ground(t);
   if (height < 0.0) return hit;
   double depth = ray.depth;
-  while (t < last && piece.column >= 0 && piece.column < columns_ && piece.row >= 0 &&
+  while (t < way->end && piece.column >= 0 && piece.column < columns_ && piece.row >= 0 &&
          piece.row < rows_) {
     piece.begin = t;
-    piece.end = std::min({x.next, y.next, last});
+    piece.end = std::min({x.next, y.next, way->end});
     const double height_after = above_ground(piece.end);
     if (std::min(height, height_after) <= tallest_ && piece.end > t) {
       const double slope = (height_after - height) / (piece.end - t);
@@ -142,11 +148,7 @@ RayHit World::trace(const Ray& ray, const BodyIndex& moving) const {
     }
     t = piece.end;
     height = height_after;
-    if (x.next < y.next) {
-      x.advance(piece.column);
-    } else {
-      y.advance(piece.row);
-    }
+    x.next < y.next ? x.advance(piece.column) : y.advance(piece.row);
   }
   return hit;
 }

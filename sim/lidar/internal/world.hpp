@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -74,6 +73,12 @@ class World {
     int row = 0;
     double height(double t) const { return start.z() + step.z() * t; }
   };
+
+  struct Stretch {
+    double begin = 0.0;
+    double end = 0.0;
+  };
+  std::optional<Stretch> stretch(const Ray& ray) const;
 
   int block(int column, int row) const { return row * columns_ + column; }
   float corner(int column, int row) const {

@@ -13,7 +13,7 @@ namespace {
 CameraConfig flawless() {
   CameraConfig config;
   config.found_probability = 1.0;
-  config.found_half_px = 0.0;
+  config.found_half_px = 0;
   config.jitter_ratio = 0.0;
   config.confusion_probability = 0.0;
   config.false_per_image_ratio = 0.0;
@@ -129,7 +129,7 @@ TEST(CameraSimulator, LeavesHideAndBareRowsDoNot) {
 TEST(CameraSimulator, SmallOnesAreMissedMoreOften) {
   CameraConfig config = flawless();
   config.found_probability = 0.9;
-  config.found_half_px = 25.0;
+  config.found_half_px = 25;
   CameraSimulator camera(config, mount(), 1);
   const auto share = [&](double range) {
     const LidarScene scene = meadow({someone({range, 0.0})});
