@@ -15,6 +15,7 @@
 #include "sim/lab/energy_study.hpp"
 #include "sim/lab/polito_study.hpp"
 #include "sim/lab/prediction_study.hpp"
+#include "sim/lab/rows_study.hpp"
 #include "sim/lab/tracking_study.hpp"
 
 namespace headland::apps {
@@ -78,6 +79,11 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
           return run_prediction_study(config, folder_of(node), jobs);
         });
   }
+  if (name == "rows") {
+    return run_as<RowsStudyConfig>(node, max_episodes, [&](const RowsStudyConfig& config) {
+      return run_rows_study(config, jobs);
+    });
+  }
   if (name == "tracking") {
     return run_as<TrackingStudyConfig>(node, max_episodes, [&](const TrackingStudyConfig& config) {
       return run_tracking_study(config, jobs);
@@ -93,7 +99,7 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
   where.key = "study";
   return fail(study ? ErrorCode::kUnknownName : ErrorCode::kMissingKey,
               study ? "'" + name + "' is no study" : "required key is missing",
-              "allowed: acfr, crowd, ebs221, energy, polito, prediction, tracking", where);
+              "allowed: acfr, crowd, ebs221, energy, polito, prediction, rows, tracking", where);
 }
 
 }  // namespace

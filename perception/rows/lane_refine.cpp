@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Dense>
 
@@ -14,8 +15,7 @@ constexpr double kTukey = 4.685;  // biweight, 95 % efficient with normal residu
 constexpr double kMadToDeviation = 1.4826;
 constexpr double kLeastDeviation = 0.05;  // [m]
 constexpr double kNearAhead = 4.0;        // [m]
-constexpr double kBesideAhead = 0.75;     // [m]
-constexpr double kBesideBehind = 1.5;     // [m]
+constexpr double kBeginsBehind = 1.5;     // [m]
 constexpr double kLeastWeight = 0.5;      // of a station
 constexpr double kInsideShare = 0.5;      // of the width, about the centre
 constexpr std::array kHalfWidths = {-3.0, -1.0, 1.0, 3.0};
@@ -117,13 +117,14 @@ LaneFit LaneRefine::summary(std::span<const internal::Column> columns, const Fra
   fit.curvature_1pm = frame.curvature_1pm;
   fit.covariance = covariance.topLeftCorner<3, 3>();
   for (std::size_t side = 0; side < 2; ++side) {
+    fit.begins_m[side] = std::numeric_limits<double>::infinity();
     for (const Station& station : stations_[side + 1]) {
       if (station.weight < kLeastWeight) continue;
       ++fit.stations[side];
       fit.support[side] += station.weight;
       const double u = station.u / station.weight;
       if (u >= 0.0 && u <= kNearAhead) ++fit.near_stations[side];
-      if (u >= -kBesideBehind && u <= kBesideAhead) ++fit.beside[side];
+      if (u >= -kBeginsBehind) fit.begins_m[side] = std::min(fit.begins_m[side], u);
     }
   }
   const double c = std::cos(frame.heading_rad);

@@ -55,7 +55,7 @@ struct LaneFit {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   std::array<int, 2> stations{};       ///< with columns, right and left
   std::array<int, 2> near_stations{};  ///< of these the ones up to four metres ahead
-  std::array<int, 2> beside{};         ///< and the ones beside the robot
+  std::array<double, 2> begins_m{};    ///< from where on, no farther behind than 1.5 m
   std::array<double, 2> support{};     ///< summed weight of their columns
   double inside = 0.0;                 ///< summed weight of the columns in the lane's middle
 };

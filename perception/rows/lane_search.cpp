@@ -32,39 +32,47 @@ void LaneSearch::sum_up(std::span<const internal::Column> columns, double headin
   for (std::size_t i = 1; i < below_.size(); ++i) below_[i] += below_[i - 1];
 }
 
-double LaneSearch::weight_between(double low, double high) const {
-  const auto edge = [&](double across) {
-    const double index = std::round((across + reach_m_) / config_.bin_m);
-    return static_cast<std::size_t>(std::clamp(index, 0.0, static_cast<double>(below_.size() - 1)));
+void LaneSearch::keep_best_pair(double heading_rad, double width_m, LaneHypothesis& best) {
+  // All in bins; line i lies at the edge below bin i.
+  const auto in_bins = [&](double length) {
+    return static_cast<int>(std::round(length / config_.bin_m));
   };
-  return below_[edge(high)] - below_[edge(low)];
-}
-
-void LaneSearch::keep_best_pair(double heading_rad, double width_m, LaneHypothesis& best) const {
-  const double tolerance = config_.width_tolerance_m;
-  const double widest = width_m + tolerance;
-  for (double left = config_.bin_m; left < widest; left += config_.bin_m) {
-    const double support_left = weight_between(left - config_.wall_m, left + config_.wall_m);
-    const double narrowest = std::max(width_m - tolerance, left + config_.bin_m);
-    for (double width = narrowest; width <= widest; width += config_.bin_m) {
-      const double right = left - width;
-      const double support_right = weight_between(right - config_.wall_m, right + config_.wall_m);
-      const double centre = 0.5 * (left + right);
-      const double half_inside = 0.5 * config_.inside_ratio * width;
-      const double inside = weight_between(centre - half_inside, centre + half_inside);
-      const double off = (width - width_m) / tolerance;
+  const int last = static_cast<int>(below_.size()) - 1;
+  const auto between = [&](int low, int high) {
+    return below_[static_cast<std::size_t>(std::min(high, last))] -
+           below_[static_cast<std::size_t>(std::max(low, 0))];
+  };
+  const int wall = in_bins(config_.wall_m);
+  const int robot = in_bins(reach_m_);
+  const int least = std::max(2, in_bins(width_m - config_.narrower_m));
+  const int most = in_bins(width_m + config_.wider_m);
+  for (int left = robot + 1; left < robot + most; ++left) {
+    const double support_left = between(left - wall, left + wall);
+    for (int width = std::max(least, left - robot + 1); width <= most; ++width) {
+      const int right = left - width;
+      const double support_right = between(right - wall, right + wall);
+      const int half_inside = in_bins(0.5 * config_.inside_ratio * width * config_.bin_m);
+      const int centre = (left + right) / 2;
+      const double inside = between(centre - half_inside, centre + half_inside);
+      const double wider = width * config_.bin_m - width_m;
+      const double off = wider / (wider > 0.0 ? config_.wider_m : config_.narrower_m);
       const double support = (support_left + support_right) * (1.0 - kWidthCost * off * off);
       const double score = support - config_.inside_weight * inside;
-      if (score > best.score) {
-        best = {heading_rad, left, right, score, support_left, support_right, inside};
-      }
+      if (score <= best.score) continue;
+      best = {heading_rad,
+              (left - robot) * config_.bin_m,
+              (right - robot) * config_.bin_m,
+              score,
+              support_left,
+              support_right,
+              inside};
     }
   }
 }
 
 std::optional<LaneHypothesis> LaneSearch::search(std::span<const internal::Column> columns,
                                                  double width_m, double expected_heading_rad) {
-  const double reach = width_m + config_.width_tolerance_m + config_.wall_m + config_.bin_m;
+  const double reach = width_m + config_.wider_m + config_.wall_m + config_.bin_m;
   LaneHypothesis best;
   const auto look = [&](double middle, double span, double step) {
     const int steps = static_cast<int>(std::round(span / step));

@@ -16,7 +16,8 @@ struct LaneSearchConfig {
   double fine_step_deg = 0.25;
   double bin_m = 0.05;
   double wall_m = 0.3;
-  double width_tolerance_m = 0.5;
+  double narrower_m = 0.9;
+  double wider_m = 0.4;
   double inside_ratio = 0.5;
   double inside_weight = 2.0;
   double ahead_m = 12.0;
@@ -30,7 +31,9 @@ struct LaneSearchConfig {
     v("fine_step_deg", fine_step_deg, config::Range{0.01, 5.0}, "Of the second pass [deg]");
     v("bin_m", bin_m, config::Range{0.01, 0.5}, "Of the lines' distances [m]");
     v("wall_m", wall_m, config::Range{0.05, 1.0}, "Columns so near a line support it [m]");
-    v("width_tolerance_m", width_tolerance_m, config::kPositive, "Against the rows' width [m]");
+    v("narrower_m", narrower_m, config::kPositive,
+      "Lines may be nearer to each other than the rows: canopy is seen from the lane [m]");
+    v("wider_m", wider_m, config::kPositive, "and farther [m]");
     v("inside_ratio", inside_ratio, config::kFraction,
       "Share of the lane's width, about its centre, that has to be empty");
     v("inside_weight", inside_weight, config::kNonNegative,
@@ -66,10 +69,14 @@ class LaneSearch {
   std::optional<LaneHypothesis> search(std::span<const internal::Column> columns, double width_m,
                                        double expected_heading_rad);
 
+  /// Is this lane as wide as rows `width_m` apart may look?
+  bool is_wide_enough(double seen_m, double width_m) const {
+    return seen_m >= width_m - config_.narrower_m && seen_m <= width_m + config_.wider_m;
+  }
+
  private:
   void sum_up(std::span<const internal::Column> columns, double heading_rad, double reach);
-  double weight_between(double low, double high) const;
-  void keep_best_pair(double heading_rad, double width_m, LaneHypothesis& best) const;
+  void keep_best_pair(double heading_rad, double width_m, LaneHypothesis& best);
 
   LaneSearchConfig config_;
   double reach_m_ = 0.0;

@@ -13,7 +13,10 @@ constexpr int kGroundIterations = 150;
 constexpr int kLeastPoints = 100;
 constexpr int kLeastGroundCells = 12;  // of a metre
 constexpr int kLeastLanePoints = 20;
-constexpr double kPassed = 0.3;         // beyond the end by so much it is behind the robot [m]
+constexpr double kNearAhead = 4.0;      // [m]
+constexpr double kBehindSensor = 1.0;   // [m]
+constexpr double kBeside = 0.25;        // [m]
+constexpr double kBesideSensor = 0.75;  // [m]
 constexpr double kWidestHeading = 0.6;  // of a lane the robot drives in [rad]
 
 internal::ColumnConfig columns_of(const RowDetectorConfig& config) {
@@ -47,7 +50,7 @@ void RowDetector::reset() { *this = RowDetector(RowDetectorConfig(config_)); }
 
 // A lane starts with both rows beside the robot and ahead of it; one row anywhere near is enough to
 // go on.
-RowDetector::Sight RowDetector::judged(const LaneFit& fit) const {
+RowDetector::Sight RowDetector::judged(const LaneFit& fit, double first_visible_m) const {
   Sight sight{RowStatus::kValid, fit, RowSides::kNone};
   const bool right = fit.stations[0] >= config_.least_stations_count;
   const bool left = fit.stations[1] >= config_.least_stations_count;
@@ -58,14 +61,14 @@ RowDetector::Sight RowDetector::judged(const LaneFit& fit) const {
   const double weaker = left && right ? std::min(fit.support[0], fit.support[1])
                                       : std::max(fit.support[0], fit.support[1]);
   const auto starts_beside = [&](std::size_t side) {
-    return fit.near_stations[side] >= config_.near_stations_count && fit.beside[side] > 0;
+    return fit.near_stations[side] >= config_.near_stations_count &&
+           fit.begins_m[side] <= first_visible_m;
   };
-  const bool is_at_robot =
-      starts ? starts_beside(0) && starts_beside(1)
-             : fit.near_stations[0] + fit.near_stations[1] + fit.beside[0] + fit.beside[1] > 1;
+  const auto goes_on = [&](std::size_t side) { return fit.begins_m[side] < kNearAhead; };
+  const bool is_at_robot = starts ? starts_beside(0) && starts_beside(1) : goes_on(0) || goes_on(1);
   if (!has_support) {
     sight.status = RowStatus::kNoLane;
-  } else if (std::abs(fit.width_m - config_.row_width_m) > config_.search.width_tolerance_m) {
+  } else if (!search_.is_wide_enough(fit.width_m, config_.row_width_m)) {
     sight.status = RowStatus::kWidthOff;
   } else if (fit.inside > config_.inside_limit_ratio * weaker ||
              std::abs(fit.heading_rad) > kWidestHeading ||
@@ -97,11 +100,21 @@ RowDetector::Sight RowDetector::look(const std::vector<LidarPoint>& points_base)
   const double expected_width = is_known ? tracker_.lane().width_m : config_.row_width_m;
   const auto start = search_.search(columns, config_.row_width_m, expected_heading);
   if (!start) return {RowStatus::kNoLane, {}, RowSides::kNone};
-  const Sight sight = judged(refine_.refine(columns, *start, expected_width));
+  const Sight sight =
+      judged(refine_.refine(columns, *start, expected_width), first_visible(points_base));
   if (sight.status == RowStatus::kValid && !has_ground_in_lane(points_base, sight.fit)) {
     return {RowStatus::kNoGround, {}, RowSides::kNone};
   }
   return sight;
+}
+
+// Where rows beside the robot are seen from on: at the robot, or ahead of a sensor that looks
+// ahead.
+double RowDetector::first_visible(const std::vector<LidarPoint>& points_base) const {
+  const auto behind = std::count_if(points_base.begin(), points_base.end(), [&](const auto& point) {
+    return point.position.x() < config_.sensor_x_m - kBehindSensor;
+  });
+  return behind >= kLeastPoints ? kBeside : std::max(0.0, config_.sensor_x_m) + kBesideSensor;
 }
 
 // A plane without a point between the rows is a slice through their canopy.
@@ -158,7 +171,7 @@ RowEstimate RowDetector::update_joint(const std::vector<LidarPoint>& points_base
     }
   }
   const RowEnd end = end_finder_.end();
-  if (end.seen && end.distance_m < -kPassed) {
+  if (end.seen && end.distance_m < 0.0) {
     tracker_.reset();
     if (status == RowStatus::kValid || status == RowStatus::kUnconfirmed) {
       status = RowStatus::kBehindRowEnd;

@@ -109,7 +109,8 @@ class RowDetector {
 
   RowEstimate update_joint(const std::vector<LidarPoint>& points_base);
   Sight look(const std::vector<LidarPoint>& points_base);
-  Sight judged(const LaneFit& fit) const;
+  Sight judged(const LaneFit& fit, double first_visible_m) const;
+  double first_visible(const std::vector<LidarPoint>& points_base) const;
   bool has_ground_in_lane(const std::vector<LidarPoint>& points_base, const LaneFit& fit) const;
   void go_on(const Pose2& moved, double dt_s);
   RowEstimate outcome(const Sight& sight, RowStatus status) const;

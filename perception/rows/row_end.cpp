@@ -62,9 +62,11 @@ void RowEndFinder::move(double along_m) {
   }
 }
 
-void RowEndFinder::count_ray(Bin* bin, bool is_hit) {
+void RowEndFinder::count_ray(std::size_t side, double u, bool is_hit) {
+  Bin* bin = bin_at(side, u);
   if (bin == nullptr) return;
   (is_hit ? bin->hits : bin->passes) += 1.0f;
+  if (is_hit) bin->hits_m += (static_cast<float>(along_m_ + u) - bin->hits_m) / bin->hits;
   if (bin->hits + bin->passes <= kMostRays) return;
   bin->hits *= 0.75f;
   bin->passes *= 0.75f;
@@ -92,7 +94,7 @@ void RowEndFinder::count_rays(std::span<const LidarPoint> points_base,
     if (reach <= half + gate) {
       const double lowest = config_.low_m + kTilt * std::abs(place.x());
       if (height < lowest || height > config_.high_m) continue;
-      count_ray(bin_at(side, place.x()), true);
+      count_ray(side, place.x(), true);
       continue;
     }
     const double line = side == 1 ? half : -half;
@@ -100,7 +102,7 @@ void RowEndFinder::count_rays(std::span<const LidarPoint> points_base,
     if (!(share > 0.0 && share < 1.0)) continue;
     const double crossing = start_height + share * (height - start_height);
     if (crossing < config_.low_m || crossing > config_.high_m) continue;
-    count_ray(bin_at(side, start.x() + share * (place.x() - start.x())), false);
+    count_ray(side, start.x() + share * (place.x() - start.x()), false);
   }
 }
 
@@ -146,7 +148,9 @@ void RowEndFinder::look_for_end() {
     if (rays >= kLeastRays) ++seen_since;
     if (sum > highest) {
       highest = sum;
-      highest_u = u;
+      // Within the bin the row ends where its hits do.
+      const float hits = std::max(1.0f, right->hits + left->hits);
+      highest_u = (right->hits * right->hits_m + left->hits * left->hits_m) / hits - along_m_;
       bins_since = 0;
       seen_since = 0;
       continue;

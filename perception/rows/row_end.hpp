@@ -76,11 +76,12 @@ class RowEndFinder {
   struct Bin {
     float hits = 0.0f;
     float passes = 0.0f;
+    float hits_m = 0.0f;  // mean place of the hits along the row
   };
 
   Bin* bin_at(std::size_t side, double u);
   const Bin* bin_at(std::size_t side, double u) const;
-  static void count_ray(Bin* bin, bool is_hit);
+  void count_ray(std::size_t side, double u, bool is_hit);
   void count_rays(std::span<const LidarPoint> points_base, const internal::FittedPlane& ground,
                   const RowEstimate& lane);
   double hit_ratio() const;

@@ -30,7 +30,7 @@ struct PolitoStudyConfig {
   std::vector<double> cycles_s = {0.005, 0.01, 0.02, 0.04, 0.05, 0.1};
   double odometry_scale_ratio = 1.01;  ///< of the cells with a wrong wheel radius
   double heading_error_deg = 0.5;      ///< of the cells with a misaligned compass
-  PolitoOrchardConfig orchard;
+  ParametricOrchardConfig orchard;
   double lookahead_m = 0.75;  ///< LD
   RoverTrackerConfig tracker;
 

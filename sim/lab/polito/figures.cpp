@@ -114,7 +114,7 @@ void add_baseline_table(StudyResult& result) {
   result.tables.push_back(std::move(table));
 }
 
-PlotSeries hairpin_series(const std::string& name, const PolitoOrchardConfig& orchard,
+PlotSeries hairpin_series(const std::string& name, const ParametricOrchardConfig& orchard,
                           const std::vector<Point2>& positions) {
   PlotSeries series{name};
   const double from_y = orchard.row_end() - 2.0;

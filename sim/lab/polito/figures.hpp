@@ -33,7 +33,7 @@ void add_accuracy_table(const PolitoStudyConfig& config, StudyResult& result);
 void add_baseline_table(StudyResult& result);
 
 /// The part of a drive around the first hairpin, for Figs. 17, 19 and 22.
-PlotSeries hairpin_series(const std::string& name, const PolitoOrchardConfig& orchard,
+PlotSeries hairpin_series(const std::string& name, const ParametricOrchardConfig& orchard,
                           const std::vector<Point2>& positions);
 
 }  // namespace headland

@@ -8,7 +8,7 @@
 
 namespace headland {
 
-std::optional<Error> PolitoOrchardConfig::check() const {
+std::optional<Error> ParametricOrchardConfig::check() const {
   if (row_width_m >= pitch()) {
     return Error{ErrorCode::kBadGeometry,
                  fmt::format("tree rows {} m wide fill the pitch of {} m", row_width_m, pitch()),
@@ -25,7 +25,7 @@ std::optional<Error> PolitoOrchardConfig::check() const {
   return std::nullopt;
 }
 
-OrchardGrid rasterize(const PolitoOrchardConfig& orchard, double cells_per_m2) {
+OrchardGrid rasterize(const ParametricOrchardConfig& orchard, double cells_per_m2) {
   OrchardGrid grid;
   grid.cell_m = 1.0 / std::sqrt(cells_per_m2);
   grid.columns = static_cast<int>(std::ceil(orchard.field_width_m / grid.cell_m - 1e-9));
@@ -68,7 +68,7 @@ std::optional<ThreePointArc> arc_through(const Point2& from, const Point2& apex,
   return arc;
 }
 
-Result<OrchardPath> plan_orchard(const PolitoOrchardConfig& orchard) {
+Result<OrchardPath> plan_orchard(const ParametricOrchardConfig& orchard) {
   if (auto error = orchard.check()) return tl::unexpected<Error>(*error);
   const double half = 0.5 * orchard.pitch();
   const double room = std::min(orchard.row_start_m, orchard.field_length_m - orchard.row_end());

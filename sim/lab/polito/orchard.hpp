@@ -14,7 +14,7 @@ namespace headland {
 
 /// The parametric orchard of (004) Sec. 2.2; the defaults are its Fig. 4. The field spans
 /// [0, field_width] x [0, field_length] in `map`; tree rows run along y.
-struct PolitoOrchardConfig {
+struct ParametricOrchardConfig {
   int tree_rows_count = 9;        ///< n
   double row_width_m = 2.0;       ///< w
   double row_length_m = 80.0;     ///< l
@@ -54,7 +54,7 @@ struct OrchardGrid {
   }
 };
 /// `cells_per_m2`: m, the mesh refinement; a cell is occupied when its centre lies in a tree row.
-OrchardGrid rasterize(const PolitoOrchardConfig& orchard, double cells_per_m2);
+OrchardGrid rasterize(const ParametricOrchardConfig& orchard, double cells_per_m2);
 
 /// The rover's way through all alleys, and the kind of each of its legs.
 struct OrchardPath {
@@ -66,7 +66,7 @@ struct OrchardPath {
 /// (004) Sec. 2.3: straight up and down the alleys, from the field's edge in the first alley to the
 /// edge where the last one leads, with a three-point arc around the end of each tree row.
 /// @return kTurnDoesNotFit when the headland is shorter than half the pitch.
-Result<OrchardPath> plan_orchard(const PolitoOrchardConfig& orchard);
+Result<OrchardPath> plan_orchard(const ParametricOrchardConfig& orchard);
 
 /// The circular arc from `from` to `to` through `apex`, driven forward.
 struct ThreePointArc {

@@ -15,7 +15,7 @@ Vehicle rover() {
 }
 
 OrchardPath small_orchard() {
-  PolitoOrchardConfig orchard;
+  ParametricOrchardConfig orchard;
   orchard.tree_rows_count = 2;
   orchard.field_width_m = 24.0;
   orchard.field_length_m = 40.0;

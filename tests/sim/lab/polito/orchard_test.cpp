@@ -6,8 +6,8 @@
 namespace headland {
 namespace {
 
-TEST(PolitoOrchardConfig, GivesTheAlleysAndThePitchOfFigure4) {  // (004) Eqs. 3-4
-  const PolitoOrchardConfig orchard;
+TEST(ParametricOrchardConfig, GivesTheAlleysAndThePitchOfFigure4) {  // (004) Eqs. 3-4
+  const ParametricOrchardConfig orchard;
   EXPECT_EQ(orchard.alleys(), 10);
   EXPECT_DOUBLE_EQ(orchard.pitch(), 10.0);
   EXPECT_DOUBLE_EQ(orchard.alley_x(0), 5.0);
@@ -28,7 +28,7 @@ TEST(PlanOrchard, DrivesThePathOfFigure6) {
 }
 
 TEST(PlanOrchard, PassesThroughItsCheckpointsAndOutsideTheTrees) {
-  PolitoOrchardConfig orchard;
+  ParametricOrchardConfig orchard;
   for (const int rows : {1, 4, 9, 16}) {
     orchard.tree_rows_count = rows;
     orchard.row_start_m = 30.0;
@@ -50,7 +50,7 @@ TEST(PlanOrchard, PassesThroughItsCheckpointsAndOutsideTheTrees) {
 }
 
 TEST(PlanOrchard, RefusesAHairpinLongerThanTheHeadland) {
-  PolitoOrchardConfig orchard;
+  ParametricOrchardConfig orchard;
   orchard.row_start_m = 4.0;
   const auto plan = plan_orchard(orchard);
   ASSERT_FALSE(plan);
@@ -58,16 +58,16 @@ TEST(PlanOrchard, RefusesAHairpinLongerThanTheHeadland) {
 }
 
 TEST(PlanOrchard, RefusesRowsThatDoNotFitTheField) {
-  PolitoOrchardConfig wide;
+  ParametricOrchardConfig wide;
   wide.row_width_m = 10.0;
   EXPECT_EQ(plan_orchard(wide).error().code, ErrorCode::kBadGeometry);
-  PolitoOrchardConfig long_rows;
+  ParametricOrchardConfig long_rows;
   long_rows.row_length_m = 95.0;
   EXPECT_EQ(plan_orchard(long_rows).error().code, ErrorCode::kBadGeometry);
 }
 
 TEST(Rasterize, OccupiesTheAreaOfTheTreeRows) {  // A = w l each
-  const PolitoOrchardConfig orchard;
+  const ParametricOrchardConfig orchard;
   const OrchardGrid grid = rasterize(orchard, 4.0);
   EXPECT_EQ(grid.columns, 200);
   EXPECT_EQ(grid.rows, 200);
