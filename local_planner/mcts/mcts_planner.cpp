@@ -8,6 +8,7 @@
 #include "local_planner/mcts/internal/tree.hpp"
 #include "local_planner/outline.hpp"
 #include "local_planner/rollout.hpp"
+#include "local_planner/standstill.hpp"
 
 namespace headland {
 
@@ -16,11 +17,11 @@ using namespace mcts;
 namespace {
 
 constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
-constexpr double kStands = 0.05;         // slower than this [m/s]
 constexpr double kCommit = 0.5;          // what is driven before the next plan can stop it [s]
 constexpr double kAnyNearer = 0.05;      // [m]
 constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
+constexpr int kMostLooks = 2000000;      // ... and may stand still
 
 // Constant velocities as they were observed, with what is known of their noise.
 void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& prediction) {
@@ -65,7 +66,7 @@ struct MctsPlanner::Impl {
   }
 
   void set_task(const LocalScene& scene, const LocalGoal& goal);
-  double impatience(const LocalScene& scene) const;
+  double impatience() const;
   double risk_here(const LocalScene& scene) const;
   void set_forecasts(const LocalScene& scene, const mcts::Motion& root);
   std::vector<Point2> robot_path(const mcts::Motion& root, int action) const;
@@ -89,7 +90,7 @@ struct MctsPlanner::Impl {
   Found found;
   bool has_tree = false;
   double planned_s = 0.0;  // when
-  double moved_s = 0.0;    // the robot moved last
+  Standstill standstill;
   int kept = 0;
 };
 
@@ -117,7 +118,7 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
     task.along = ahead.pose.heading();
     task.final = false;
   }
-  task.detour = config.detour_s * impatience(scene);
+  task.detour = config.detour_s * impatience();
   task.goal = place - here;
   task.accuracy = task.final ? kAim * std::max(0.0, goal.accuracy_m) : 0.5;
   const double distance = task.goal.norm();
@@ -140,8 +141,8 @@ std::vector<Point2> MctsPlanner::Impl::robot_path(const mcts::Motion& root, int 
 }
 
 // Counts standing: 1 while the robot moves.
-double MctsPlanner::Impl::impatience(const LocalScene& scene) const {
-  return 1.0 + (scene.time_s - moved_s) / config.patience_s;
+double MctsPlanner::Impl::impatience() const {
+  return 1.0 + standstill.duration() / config.patience_s;
 }
 
 // In the open, keeping well away costs little; in a crowd nobody would get on.
@@ -158,7 +159,7 @@ double MctsPlanner::Impl::risk_here(const LocalScene& scene) const {
 void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motion& root) {
   const Point2 here = scene.robot.state.pose.position();
   MctsConfig impatient = config;
-  impatient.risk_ratio = risk_here(scene) / impatience(scene);
+  impatient.risk_ratio = risk_here(scene) / impatience();
   if (predictor == nullptr) {
     coast(scene.agents, config.step_s, config.depth_count, prediction);
     forecasts.resize(1);
@@ -212,7 +213,7 @@ void MctsPlanner::Impl::set_tree(const LocalScene& scene, const mcts::Motion& ro
 
 // The plan in short steps, driven by the vehicle's own model.
 void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) {
-  if (found.braking) {
+  if (found.braking || found.actions.empty()) {
     brake(vehicle, scene.robot.state, scene.time_s, LocalStatus::kBraking, plan);
     if (std::abs(scene.robot.state.speed) < 1e-3) plan.status = LocalStatus::kBlocked;
     return;
@@ -252,7 +253,7 @@ void MctsPlanner::do_observe(const LocalScene& scene) {
 void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
                           LocalPlan& plan) {
   Impl& d = *impl_;
-  if (!d.has_tree || std::abs(scene.robot.state.speed) > kStands) d.moved_s = scene.time_s;
+  d.standstill.update(scene.time_s, scene.robot.state.speed);
   d.set_task(scene, goal);
   VehicleState local = scene.robot.state;
   local.pose.x = 0.0;
@@ -263,7 +264,8 @@ void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const 
   d.tree.begin(d.task);
   int looks = 0;
   const bool live = budget.deadline.clock != nullptr;
-  while (looks < budget.iterations || (live && budget.iterations <= 0)) {
+  const int most = live && budget.iterations <= 0 ? kMostLooks : budget.iterations;
+  while (looks < most) {
     if (live && looks % kLooksBetweenClocks == 0 && budget.deadline.passed()) break;
     d.tree.expand(d.task);
     ++looks;
