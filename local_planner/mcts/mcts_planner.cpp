@@ -23,8 +23,9 @@ constexpr double kAim = 0.75;            // of the accuracy is aimed at: positio
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
 constexpr int kMostLooks = 2000000;      // ... and may stand still
 
-// Constant velocities as they were observed, with what is known of their noise.
-void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& prediction) {
+// Constant velocities, with what is known of their noise; observed `age` [s] ago.
+void coast(std::span<const Agent> agents, double age, double step_s, int steps,
+           Prediction& prediction) {
   constexpr double kAcceleration = 0.5;  // spectral density of its noise [m2/s3]
   prediction.step_s = step_s;
   prediction.steps = steps;
@@ -38,10 +39,24 @@ void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& 
     prediction.radius_m.push_back(agent.radius_m);
     for (int k = 1; k <= steps; ++k) {
       const double t = k * step_s;
+      const double since = t + age;
       const double variance =
-          agent.noise_m * agent.noise_m + kAcceleration * t * t * t / 3.0 + 1e-4;
+          agent.noise_m * agent.noise_m + kAcceleration * since * since * since / 3.0 + 1e-4;
       prediction.mean.push_back(agent.position + t * agent.velocity);
       prediction.covariance.push_back(variance * Eigen::Matrix2d::Identity());
+    }
+  }
+}
+
+// Moves a prediction on in time by `age` [s], as each agent goes on.
+void move_on(Prediction& prediction, double age) {
+  const double share = age / prediction.step_s;
+  for (int agent = 0; agent < prediction.agents(); ++agent) {
+    Point2 way(0.0, 0.0);  // of one step
+    for (int k = 0; k < prediction.steps; ++k) {
+      Point2& mean = prediction.mean[prediction.index(agent, k)];
+      if (k + 1 < prediction.steps) way = prediction.mean[prediction.index(agent, k + 1)] - mean;
+      mean += share * way;
     }
   }
 }
@@ -65,6 +80,7 @@ struct MctsPlanner::Impl {
     return state.pose.position() + centre * state.pose.heading();
   }
 
+  LocalScene as_of_now(const LocalScene& scene);
   void set_task(const LocalScene& scene, const LocalGoal& goal);
   double impatience() const;
   double risk_here(const LocalScene& scene) const;
@@ -83,6 +99,7 @@ struct MctsPlanner::Impl {
   OutlineDiscs discs;
   LocalPlan scratch;
 
+  std::vector<Agent> agents;  // as of now
   std::vector<Forecast> forecasts;
   Prediction prediction;
   Tree tree;
@@ -93,6 +110,16 @@ struct MctsPlanner::Impl {
   Standstill standstill;
   int kept = 0;
 };
+
+// The scene with its agents moved on since they were seen.
+LocalScene MctsPlanner::Impl::as_of_now(const LocalScene& scene) {
+  LocalScene now = scene;
+  now.age_s = std::max(0.0, scene.age_s);
+  agents.assign(scene.agents.begin(), scene.agents.end());
+  for (Agent& agent : agents) agent.position += now.age_s * agent.velocity;
+  now.agents = agents;
+  return now;
+}
 
 // The local goal: ahead on the global path, or the next place itself where it is near.
 void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal) {
@@ -161,7 +188,7 @@ void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motio
   MctsConfig impatient = config;
   impatient.risk_ratio = risk_here(scene) / impatience();
   if (predictor == nullptr) {
-    coast(scene.agents, config.step_s, config.depth_count, prediction);
+    coast(scene.agents, scene.age_s, config.step_s, config.depth_count, prediction);
     forecasts.resize(1);
     forecasts.front().set(prediction, scene.agents, here, radius, impatient);
     return;
@@ -175,6 +202,7 @@ void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motio
     std::vector<Point2> path;
     if (reacts) path = robot_path(root, turn * Manoeuvres::kSpeeds + speed);
     predictor->predict(path, config.step_s, config.depth_count, prediction);
+    if (scene.age_s > 0.0) move_on(prediction, scene.age_s);
     forecasts[i].set(prediction, scene.agents, here, radius, impatient);
   }
 }
@@ -250,9 +278,10 @@ void MctsPlanner::do_observe(const LocalScene& scene) {
                             robot.speed * robot.pose.heading(), scene.time_s - scene.age_s);
 }
 
-void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
+void MctsPlanner::do_plan(const LocalScene& seen, const LocalGoal& goal, const PlanBudget& budget,
                           LocalPlan& plan) {
   Impl& d = *impl_;
+  const LocalScene scene = d.as_of_now(seen);
   d.standstill.update(scene.time_s, scene.robot.state.speed);
   d.set_task(scene, goal);
   VehicleState local = scene.robot.state;

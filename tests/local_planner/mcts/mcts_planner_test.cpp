@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "local_planner/prediction/constant_velocity.hpp"
 #include "local_planner/prediction/orca_predictor.hpp"
 #include "tests/local_planner/episode.hpp"
 #include "tests/local_planner/planner_laws.hpp"
@@ -167,6 +168,28 @@ TEST(MctsPlanner, ItsPatienceBeginsAnewAfterAPause) {
   MctsPlanner waiting(vehicle, {});
   for (int i = 0; i < 30; ++i) plan_at(waiting, 0.5 * i);
   EXPECT_NE(plan_at(waiting, 15.0).cost, anew.cost) << "it has been waiting";
+}
+
+// Seen where he was half a second ago, somebody is where his velocity has brought him.
+TEST(MctsPlanner, MovesAgentsOnByTheAgeOfTheScene) {
+  const Vehicle vehicle = test::field_robot();
+  for (const bool predicts : {false, true}) {
+    const auto plan_for = [&](const Point2& position, double age) {
+      MctsPlanner planner(vehicle, {},
+                          predicts ? std::make_unique<ConstantVelocityPredictor>() : nullptr);
+      const std::vector<Agent> agents{test::agent_at(position.x(), position.y(), 0.0, -1.0)};
+      const LocalScene scene{10.0, VehicleState{{0.0, 0.0, 0.0}, 1.0, 0.0, 0.0}, agents, nullptr,
+                             age};
+      planner.observe(scene);
+      LocalPlan plan;
+      planner.plan(scene, straight_on(16.0), {200, {}}, plan);
+      return plan;
+    };
+    const LocalPlan old = plan_for({5.0, 1.5}, 0.5);
+    const LocalPlan anew = plan_for({5.0, 1.0}, 0.0);
+    EXPECT_NEAR(old.cost, anew.cost, 1e-3) << predicts;
+    EXPECT_GT(std::abs(plan_for({5.0, 1.5}, 0.0).cost - anew.cost), 0.05) << predicts;
+  }
 }
 
 TEST(MctsPlanner, EndsOnAClockThatStandsStill) {
