@@ -25,14 +25,13 @@ class Course {
 
   /// The aim from a state; to be called state by state of a rollout.
   Aim from(const VehicleState& state, double lookahead);
-  double s() const { return s_; }  ///< progress along the path [m]
 
  private:
   bool steers_for_place(const Point2& position, double lateral, double lookahead);
 
   const LocalGoal& goal_;
   const Path* path_;  // null: none
-  double s_ = 0.0;    // [m]
+  double s_ = 0.0;    // progress along it [m]
   std::size_t segment_ = 0;
   double place_s_ = -1.0;  // of the place on the path [m]; negative: not near
   bool reached_ = false;   // the place, in the course of the rollout

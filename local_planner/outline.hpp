@@ -51,11 +51,8 @@ class OutlineDiscs {
     return nearest - radius_;
   }
 
-  double radius() const { return radius_; }  ///< of each disc [m]
-  int count() const { return static_cast<int>(ahead_.size()); }
-
  private:
-  double radius_;
+  double radius_;              // of each disc [m]
   std::vector<double> ahead_;  // of the base [m]
 };
 

@@ -7,17 +7,18 @@
 namespace headland {
 namespace {
 
-constexpr double kStep = 0.2;     // of the look ahead [s]
-constexpr double kBehind = 3.0;   // the path is searched this far back for the vehicle [m]
-constexpr double kAhead = 3.0;    // ... and ahead
-constexpr double kWidens = 4.0;   // a free path is taken up from twice as far after so long [s] ...
-constexpr double kWidest = 6.0;   // ... and at most this many times
+constexpr double kStep = 0.2;    // of the look ahead [s]
+constexpr double kBehind = 3.0;  // the path is searched this far back for the vehicle [m]
+constexpr double kAhead = 3.0;   // ... and ahead
+constexpr double kWidens = 4.0;  // a free path is taken up from twice as far after so long [s] ...
+constexpr double kWidest = 6.0;  // ... and at most this many times
+constexpr double kPause = 1.0;   // after this, what held before is forgotten [s]
 
-// Since when something holds at `time` [s]; -1: it does not.
-void hold(bool holds, double time, double& since) {
+// Notes since when something holds at `time` [s].
+void note(bool holds, double time, std::optional<double>& since) {
   if (!holds) {
-    since = -1.0;
-  } else if (since < 0.0) {
+    since.reset();
+  } else if (!since) {
     since = time;
   }
 }
@@ -61,7 +62,7 @@ bool Arbiter::back_on_path(const LocalScene& scene, const LocalGoal& goal) const
   const Projection on = goal.path->project(pose.position(), goal.s - kBehind, goal.s + kAhead);
   const double off_heading = wrap_angle(pose.yaw - goal.path->at(on.s).pose.yaw);
   // The longer the path has been free, the farther off it may be taken up.
-  const double free_for = scene.time_s - free_since_ - config_.hold_s;
+  const double free_for = scene.time_s - *free_since_ - config_.hold_s;
   const double wider = std::min(1.0 + free_for / kWidens, kWidest);
   return on.distance <= wider * config_.rejoin_m &&
          std::abs(off_heading) <= deg_to_rad(wider * config_.rejoin_deg);
@@ -74,18 +75,23 @@ Driving Arbiter::decide(const LocalScene& scene, const LocalGoal& goal, const Ar
   }
   if (goal.path == nullptr || goal.path->empty()) return driving_ = Driving::kLocal;
   look_along(scene, goal);
-  hold(gap_ < config_.take_m, scene.time_s, in_way_since_);
-  hold(gap_ >= config_.give_m, scene.time_s, free_since_);
+  if (!(scene.time_s >= looked_s_ && scene.time_s - looked_s_ <= kPause)) {
+    in_way_since_.reset();
+    free_since_.reset();
+  }
+  looked_s_ = scene.time_s;
+  note(gap_ < config_.take_m, scene.time_s, in_way_since_);
+  note(gap_ >= config_.give_m, scene.time_s, free_since_);
+  const auto held = [&](const std::optional<double>& since, double duration) {
+    return since && scene.time_s - *since >= duration - 1e-9;
+  };
   if (driving_ == Driving::kPath) {
-    const bool in_way =
-        in_way_since_ >= 0.0 && scene.time_s - in_way_since_ >= wait(view.spare_ratio) - 1e-9;
-    if (in_way && view.may_leave) {
+    if (held(in_way_since_, wait(view.spare_ratio)) && view.may_leave) {
       driving_ = Driving::kLocal;
       ++takeovers_;
     }
-  } else {
-    const bool free = free_since_ >= 0.0 && scene.time_s - free_since_ >= config_.hold_s - 1e-9;
-    if (free && back_on_path(scene, goal)) driving_ = Driving::kPath;
+  } else if (held(free_since_, config_.hold_s) && back_on_path(scene, goal)) {
+    driving_ = Driving::kPath;
   }
   return driving_;
 }

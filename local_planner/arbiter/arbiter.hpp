@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -63,8 +64,9 @@ struct ArbiterView {
 /// time). Seed 003 (V) notes that waiting saves energy and that a responsive planner saves time,
 /// more so in dense crowds, and leaves the choice open; here the wait before the path is left grows
 /// as energy gets scarce, and shrinks with the crowd's density.
-/// One object per robot, called in order of time. Deterministic; does not allocate after the first
-/// call; about 20 us and 1 us an agent.
+/// One object per robot, called in order of time; after a pause of over a second, or a step back in
+/// time, nobody has been in the way yet, nor has the path been free. Deterministic; does not
+/// allocate after the first call; about 20 us and 1 us an agent.
 class Arbiter {
  public:
   Arbiter(const Vehicle& vehicle, const ArbiterConfig& config = {});
@@ -75,10 +77,6 @@ class Arbiter {
   Driving decide(const LocalScene& scene, const LocalGoal& goal, const ArbiterView& view = {});
 
   Driving driving() const { return driving_; }
-  /// The nearest that anyone would come on the path, as last seen [m].
-  double path_gap() const { return gap_; }
-  /// Agents per area around the robot, as last seen [1/m2].
-  double density() const { return density_; }
   /// How long somebody has to be in the way before the path is left [s].
   double wait(double spare_ratio) const;
   int takeovers() const { return takeovers_; }
@@ -90,10 +88,11 @@ class Arbiter {
   Vehicle vehicle_;
   ArbiterConfig config_;
   Driving driving_ = Driving::kPath;
-  double gap_ = 1e3;
-  double density_ = 0.0;
-  double in_way_since_ = -1.0;  // [s]; negative: nobody is
-  double free_since_ = -1.0;    // [s]; negative: it is not
+  double gap_ = 1e3;                    // the nearest that anyone would come on the path [m]
+  double density_ = 0.0;                // agents per area around the robot [1/m2]
+  double looked_s_ = -1e9;              // when
+  std::optional<double> in_way_since_;  // [s]; none: nobody is
+  std::optional<double> free_since_;    // [s]; none: it is not
   int takeovers_ = 0;
   LocalPlan ahead_;  // along the path, if nobody were there
 };

@@ -13,6 +13,11 @@ constexpr int kBisections = 7;      // of the allowed speed: to 1 % of the wante
 constexpr double kCrawl = 0.05;     // slower is not worth driving [m/s]
 constexpr double kMovesAway = 0.1;  // share of the speed with which the outline leaves someone
 
+// Of the way under way [1/m]; 0 at a stand.
+double curvature_of(const VehicleState& state) {
+  return std::abs(state.speed) > kStill ? state.yaw_rate / state.speed : 0.0;
+}
+
 bool is_finite(const Command& command) {
   return std::isfinite(command.speed) && std::isfinite(command.steering) &&
          std::isfinite(command.yaw_rate);
@@ -87,7 +92,7 @@ Turn FailSafe::turn_of(const Command& wanted, const VehicleState& state) const {
   if (vehicle_.steering == Steering::kAckermann) return turn;
   const bool rolls = std::abs(state.speed) > kStill;
   if (rolls && stops_first(wanted, state.speed)) {
-    turn.curvature = state.yaw_rate / state.speed;
+    turn.curvature = curvature_of(state);
   } else if (std::abs(wanted.speed) >= kStill) {
     turn.curvature = wanted.yaw_rate / wanted.speed;
   } else if (std::abs(wanted.yaw_rate) > 0.0) {
@@ -102,7 +107,7 @@ Turn FailSafe::held_turn(const LocalScene& scene) const {
   const bool recent = scene.time_s - held_at_ <= kHeldFor && scene.time_s >= held_at_;
   if (recent && !held_.on_the_spot) return held_;
   const VehicleState& state = scene.robot.state;
-  return {false, state.steering, state.yaw_rate / state.speed, 0.0};
+  return {false, state.steering, curvature_of(state), 0.0};
 }
 
 // Who may matter at `cap`, and the nearest of all.
@@ -111,7 +116,9 @@ void FailSafe::find_near(const LocalScene& scene, double cap, bool on_the_spot, 
   const Pose2 T_base_map = inverse(pose);
   const Stopping stopping = stop_of(on_the_spot, cap);
   const double time = stopping.duration() + std::max(0.0, scene.age_s);
-  const double reach = disc_.radius + (on_the_spot ? 2.0 * disc_.ahead : stopping.distance());
+  // The disc's centre goes as far as the base, and around it.
+  const double reach =
+      disc_.radius + 2.0 * std::abs(disc_.ahead) + (on_the_spot ? 0.0 : stopping.distance());
   near_.clear();
   for (std::size_t i = 0; i < scene.agents.size(); ++i) {
     const Agent& agent = scene.agents[i];
@@ -244,8 +251,7 @@ SafeCommand FailSafe::stop(const VehicleState& state, SafetyReason reason) const
   SafeCommand out;
   out.reason = reason;
   if (!headland::is_finite(state)) return out;
-  const bool rolls = std::abs(state.speed) > kStill;
-  const Turn turn{false, state.steering, rolls ? state.yaw_rate / state.speed : 0.0, 0.0};
+  const Turn turn{false, state.steering, curvature_of(state), 0.0};
   out.command = command(state, turn, state.speed < 0.0 ? -1.0 : 1.0, 0.0);
   return out;
 }

@@ -99,8 +99,6 @@ class FailSafe {
 
   SafeCommand limit(const LocalScene& scene, const Command& wanted);
 
-  const FailSafeConfig& config() const { return config_; }
-
  private:
   struct Verdict {
     bool safe = true;

@@ -8,6 +8,7 @@
 #include "local_planner/mcts/internal/tree.hpp"
 #include "local_planner/outline.hpp"
 #include "local_planner/rollout.hpp"
+#include "local_planner/standstill.hpp"
 
 namespace headland {
 
@@ -16,14 +17,15 @@ using namespace mcts;
 namespace {
 
 constexpr double kPlanStep = 0.1;        // of the plans handed out [s]
-constexpr double kStands = 0.05;         // slower than this [m/s]
 constexpr double kCommit = 0.5;          // what is driven before the next plan can stop it [s]
 constexpr double kAnyNearer = 0.05;      // [m]
 constexpr double kAim = 0.75;            // of the accuracy is aimed at: positions are measured
 constexpr int kLooksBetweenClocks = 64;  // a clock is read every so many nodes
+constexpr int kMostLooks = 2000000;      // ... and may stand still
 
-// Constant velocities as they were observed, with what is known of their noise.
-void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& prediction) {
+// Constant velocities, with what is known of their noise; observed `age` [s] ago.
+void coast(std::span<const Agent> agents, double age, double step_s, int steps,
+           Prediction& prediction) {
   constexpr double kAcceleration = 0.5;  // spectral density of its noise [m2/s3]
   prediction.step_s = step_s;
   prediction.steps = steps;
@@ -37,10 +39,24 @@ void coast(std::span<const Agent> agents, double step_s, int steps, Prediction& 
     prediction.radius_m.push_back(agent.radius_m);
     for (int k = 1; k <= steps; ++k) {
       const double t = k * step_s;
+      const double since = t + age;
       const double variance =
-          agent.noise_m * agent.noise_m + kAcceleration * t * t * t / 3.0 + 1e-4;
+          agent.noise_m * agent.noise_m + kAcceleration * since * since * since / 3.0 + 1e-4;
       prediction.mean.push_back(agent.position + t * agent.velocity);
       prediction.covariance.push_back(variance * Eigen::Matrix2d::Identity());
+    }
+  }
+}
+
+// Moves a prediction on in time by `age` [s], as each agent goes on.
+void move_on(Prediction& prediction, double age) {
+  const double share = age / prediction.step_s;
+  for (int agent = 0; agent < prediction.agents(); ++agent) {
+    Point2 way(0.0, 0.0);  // of one step
+    for (int k = 0; k < prediction.steps; ++k) {
+      Point2& mean = prediction.mean[prediction.index(agent, k)];
+      if (k + 1 < prediction.steps) way = prediction.mean[prediction.index(agent, k + 1)] - mean;
+      mean += share * way;
     }
   }
 }
@@ -64,8 +80,9 @@ struct MctsPlanner::Impl {
     return state.pose.position() + centre * state.pose.heading();
   }
 
+  LocalScene as_of_now(const LocalScene& scene);
   void set_task(const LocalScene& scene, const LocalGoal& goal);
-  double impatience(const LocalScene& scene) const;
+  double impatience() const;
   double risk_here(const LocalScene& scene) const;
   void set_forecasts(const LocalScene& scene, const mcts::Motion& root);
   std::vector<Point2> robot_path(const mcts::Motion& root, int action) const;
@@ -82,6 +99,7 @@ struct MctsPlanner::Impl {
   OutlineDiscs discs;
   LocalPlan scratch;
 
+  std::vector<Agent> agents;  // as of now
   std::vector<Forecast> forecasts;
   Prediction prediction;
   Tree tree;
@@ -89,9 +107,19 @@ struct MctsPlanner::Impl {
   Found found;
   bool has_tree = false;
   double planned_s = 0.0;  // when
-  double moved_s = 0.0;    // the robot moved last
+  Standstill standstill;
   int kept = 0;
 };
+
+// The scene with its agents moved on since they were seen.
+LocalScene MctsPlanner::Impl::as_of_now(const LocalScene& scene) {
+  LocalScene now = scene;
+  now.age_s = std::max(0.0, scene.age_s);
+  agents.assign(scene.agents.begin(), scene.agents.end());
+  for (Agent& agent : agents) agent.position += now.age_s * agent.velocity;
+  now.agents = agents;
+  return now;
+}
 
 // The local goal: ahead on the global path, or the next place itself where it is near.
 void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal) {
@@ -117,7 +145,7 @@ void MctsPlanner::Impl::set_task(const LocalScene& scene, const LocalGoal& goal)
     task.along = ahead.pose.heading();
     task.final = false;
   }
-  task.detour = config.detour_s * impatience(scene);
+  task.detour = config.detour_s * impatience();
   task.goal = place - here;
   task.accuracy = task.final ? kAim * std::max(0.0, goal.accuracy_m) : 0.5;
   const double distance = task.goal.norm();
@@ -140,8 +168,8 @@ std::vector<Point2> MctsPlanner::Impl::robot_path(const mcts::Motion& root, int 
 }
 
 // Counts standing: 1 while the robot moves.
-double MctsPlanner::Impl::impatience(const LocalScene& scene) const {
-  return 1.0 + (scene.time_s - moved_s) / config.patience_s;
+double MctsPlanner::Impl::impatience() const {
+  return 1.0 + standstill.duration() / config.patience_s;
 }
 
 // In the open, keeping well away costs little; in a crowd nobody would get on.
@@ -158,9 +186,9 @@ double MctsPlanner::Impl::risk_here(const LocalScene& scene) const {
 void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motion& root) {
   const Point2 here = scene.robot.state.pose.position();
   MctsConfig impatient = config;
-  impatient.risk_ratio = risk_here(scene) / impatience(scene);
+  impatient.risk_ratio = risk_here(scene) / impatience();
   if (predictor == nullptr) {
-    coast(scene.agents, config.step_s, config.depth_count, prediction);
+    coast(scene.agents, scene.age_s, config.step_s, config.depth_count, prediction);
     forecasts.resize(1);
     forecasts.front().set(prediction, scene.agents, here, radius, impatient);
     return;
@@ -174,6 +202,7 @@ void MctsPlanner::Impl::set_forecasts(const LocalScene& scene, const mcts::Motio
     std::vector<Point2> path;
     if (reacts) path = robot_path(root, turn * Manoeuvres::kSpeeds + speed);
     predictor->predict(path, config.step_s, config.depth_count, prediction);
+    if (scene.age_s > 0.0) move_on(prediction, scene.age_s);
     forecasts[i].set(prediction, scene.agents, here, radius, impatient);
   }
 }
@@ -212,7 +241,7 @@ void MctsPlanner::Impl::set_tree(const LocalScene& scene, const mcts::Motion& ro
 
 // The plan in short steps, driven by the vehicle's own model.
 void MctsPlanner::Impl::write(const LocalScene& scene, LocalPlan& plan) {
-  if (found.braking) {
+  if (found.braking || found.actions.empty()) {
     brake(vehicle, scene.robot.state, scene.time_s, LocalStatus::kBraking, plan);
     if (std::abs(scene.robot.state.speed) < 1e-3) plan.status = LocalStatus::kBlocked;
     return;
@@ -249,10 +278,11 @@ void MctsPlanner::do_observe(const LocalScene& scene) {
                             robot.speed * robot.pose.heading(), scene.time_s - scene.age_s);
 }
 
-void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const PlanBudget& budget,
+void MctsPlanner::do_plan(const LocalScene& seen, const LocalGoal& goal, const PlanBudget& budget,
                           LocalPlan& plan) {
   Impl& d = *impl_;
-  if (!d.has_tree || std::abs(scene.robot.state.speed) > kStands) d.moved_s = scene.time_s;
+  const LocalScene scene = d.as_of_now(seen);
+  d.standstill.update(scene.time_s, scene.robot.state.speed);
   d.set_task(scene, goal);
   VehicleState local = scene.robot.state;
   local.pose.x = 0.0;
@@ -263,7 +293,8 @@ void MctsPlanner::do_plan(const LocalScene& scene, const LocalGoal& goal, const 
   d.tree.begin(d.task);
   int looks = 0;
   const bool live = budget.deadline.clock != nullptr;
-  while (looks < budget.iterations || (live && budget.iterations <= 0)) {
+  const int most = live && budget.iterations <= 0 ? kMostLooks : budget.iterations;
+  while (looks < most) {
     if (live && looks % kLooksBetweenClocks == 0 && budget.deadline.passed()) break;
     d.tree.expand(d.task);
     ++looks;

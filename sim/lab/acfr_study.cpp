@@ -12,6 +12,7 @@
 #include "sim/lab/episode_row.hpp"
 #include "sim/lab/film.hpp"
 #include "sim/lab/parallel.hpp"
+#include "sim/lab/repeats.hpp"
 #include "sim/lab/statistics.hpp"
 
 namespace headland {
@@ -285,7 +286,13 @@ StudyResult result_of(const AcfrStudyConfig& config, const std::vector<Cell>& ce
 
 }  // namespace
 
+std::optional<Error> AcfrStudyConfig::check() const {
+  if (auto error = check_repeats(planners, "planners")) return error;
+  return check_repeats(accuracies_m, "accuracies_m");
+}
+
 Result<StudyResult> run_acfr_study(const AcfrStudyConfig& config, const StudyRun& run) {
+  if (auto error = config.check()) return tl::unexpected<Error>(*error);
   const std::vector<Cell> cells = cells_of(config);
   AcfrStudyConfig one = config;
   one.runs_count = 1;

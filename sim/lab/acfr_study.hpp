@@ -23,8 +23,8 @@ namespace headland {
 struct AcfrStudyConfig {
   std::string study = "acfr";
   int seed = 1;
-  int runs_count = 24;         ///< iterations of each cell: 3 scenarios of 8 in the paper
-  int tours_count = 8;         ///< iterations of a scenario
+  int runs_count = 24;          ///< iterations of each cell: 3 scenarios of 8 in the paper
+  int tours_count = 8;          ///< iterations of a scenario
   int iterations_count = 1000;  ///< of the tree search, a decision
   std::vector<LocalPlannerKind> planners = {LocalPlannerKind::kMcts};
   double dense_m2 = 10.0;  ///< area per agent
@@ -35,6 +35,9 @@ struct AcfrStudyConfig {
   AcfrWorldConfig world;
   Vehicle vehicle;
   LocalPlannersConfig local;
+
+  /// No planner and no accuracy twice.
+  std::optional<Error> check() const;
 
   template <class V>
   void visit(V& v) {
@@ -64,7 +67,7 @@ struct AcfrStudyConfig {
 /// interactions), displacement_m, speed_mps (of reached waypoints), standing_ratio,
 /// longest_stand_s, plan_ms (processor time). All but plan_ms is deterministic. Tables I, II and
 /// III in the paper's layout beside its figures.
-/// @return Errors of run_episodes and of planning the tours.
+/// @return Errors of check, of run_episodes and of planning the tours.
 Result<StudyResult> run_acfr_study(const AcfrStudyConfig& config, const StudyRun& run = {});
 
 }  // namespace headland

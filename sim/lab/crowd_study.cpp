@@ -13,6 +13,7 @@
 #include "sim/lab/crowd/tables.hpp"
 #include "sim/lab/episode_row.hpp"
 #include "sim/lab/film.hpp"
+#include "sim/lab/repeats.hpp"
 #include "sim/lab/statistics.hpp"
 
 namespace headland {
@@ -183,7 +184,10 @@ StudyResult result_of(const CrowdStudyConfig& config, const std::vector<Cell>& c
 
 }  // namespace
 
+std::optional<Error> CrowdStudyConfig::check() const { return check_repeats(planners, "planners"); }
+
 Result<StudyResult> run_crowd_study(const CrowdStudyConfig& config, const StudyRun& run) {
+  if (auto error = config.check()) return tl::unexpected<Error>(*error);
   const std::vector<Cell> cells = cells_of(config);
   CrowdStudyConfig one = config;
   one.runs_count = 1;

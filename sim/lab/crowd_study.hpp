@@ -25,6 +25,9 @@ struct CrowdStudyConfig {
   Vehicle vehicle;
   LocalPlannersConfig local;
 
+  /// No planner twice.
+  std::optional<Error> check() const;
+
   template <class V>
   void visit(V& v) {
     v("study", study, "Which study this file is for");

@@ -2,8 +2,9 @@
 #include "sim/lab/film.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+
+#include "local_planner/outline.hpp"
 
 namespace headland {
 namespace {
@@ -31,10 +32,7 @@ std::optional<EpisodeKey> first_of(const Episodes& episodes,
 
 double outline_gap(const Footprint& outline, const Pose2& pose, const Point2& agent,
                    double radius) {
-  const Point2 p = inverse(pose) * agent;
-  const double dx = std::max({p.x() - outline.front_m, -outline.rear_m - p.x(), 0.0});
-  const double dy = std::max(std::abs(p.y()) - 0.5 * outline.width_m, 0.0);
-  return std::hypot(dx, dy) - radius;
+  return outline_distance(outline, inverse(pose) * agent) - radius;
 }
 
 std::vector<FilmChoice> choose_films(const Episodes& episodes,

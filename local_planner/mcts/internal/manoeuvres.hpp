@@ -33,10 +33,8 @@ class Manoeuvres {
 
   Manoeuvres(const Vehicle& vehicle, double step_s);
 
-  double step_s() const { return step_s_; }
-  double turn_limit() const { return turn_limit_; }           ///< [rad] or [rad/s]
-  double turn_reach() const { return turn_rate_ * step_s_; }  ///< most change in a step
-  double radius() const { return radius_; }                   ///< tightest at low speed [m]
+  double turn_limit() const { return turn_limit_; }  ///< [rad] or [rad/s]
+  double radius() const { return radius_; }          ///< tightest at low speed [m]
   bool ackermann() const { return ackermann_; }
   bool reverses() const { return reverse_speed_ > 0.0; }
   double acceleration() const { return acceleration_; }  ///< [m/s2]

@@ -32,7 +32,9 @@ struct AgentGroupConfig {
     v("behaviour", behaviour,
       "orca: gives way; orca_blind: but not to vehicles; ignore: sees nobody; herd: an animal");
     v("count", count, config::Range{0, 10000}, "How many");
-    v("parcel", parcel, "Id of the row or free parcel they stay in; empty: anywhere drivable");
+    v("parcel", parcel,
+      "Id of the row or free parcel where they begin and people's goals lie, no fence for a herd; "
+      "empty: anywhere drivable");
     v("radius_m", radius_m, config::Range{0.05, 5.0}, "Of the disc that holds one [m]");
     v("speed_mps", speed_mps, config::Range{0.0, 10.0},
       "They walk at this; a herd as its model says [m/s]");
@@ -60,7 +62,8 @@ struct FieldAgentsConfig {
 };
 
 /// The people and animals of a farm. They begin, and walk to goals, uniformly in their group's
-/// parcel. The same seed gives the same agents.
+/// parcel. A herd has no goals and no fence: it may leave its parcel. The same seed gives the same
+/// agents.
 /// @return kUnknownName for a parcel that the farm does not have; kOutOfRange if the farm or parcel
 /// has no place for a group.
 Result<Crowd> make_crowd(const FieldAgentsConfig& config, const Farm& farm,

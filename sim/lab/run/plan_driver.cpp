@@ -222,7 +222,8 @@ void PlanDriver::drive(double time) {
   if (vehicle_.soc() <= 0.0) return give_up("the battery is empty", time);
   if (time > give_up_at_) return give_up("the vehicle does not get on", time);
   const int now = run_.trace.back().leg;
-  if (local_ != nullptr && local.driving == Driving::kPath && now != checked_leg_) {
+  if (local_ != nullptr && local.driving == Driving::kPath && now != checked_leg_ &&
+      may_replan(time)) {
     checked_leg_ = now;
     check_reserve(time);
   }
@@ -298,14 +299,18 @@ double PlanDriver::spare() const {
   return spare_energy(plan_, {leg, done}, vehicle_.soc());
 }
 
-// Plans what is left anew if the charge will not last; not within rows. From a little farther along
-// the path if there is no way from here, as at a row's end.
-void PlanDriver::check_reserve(double time) {
+// Not within rows, nor soon after the last time.
+bool PlanDriver::may_replan(double time) const {
+  if (!hooks_.replan || time < replan_from_) return false;
   const int leg = reference_.path.at(reached_s_).leg;
-  if (!hooks_.replan || time < replan_from_ || spare() >= 0.0 ||
-      plan_.legs[static_cast<std::size_t>(leg)].kind == LegKind::kRow) {
-    return;
-  }
+  return plan_.legs[static_cast<std::size_t>(leg)].kind != LegKind::kRow;
+}
+
+// Plans what is left anew if the charge will not last. From a little farther along the path if
+// there is no way from here, as at a row's end.
+void PlanDriver::check_reserve(double time) {
+  if (spare() >= 0.0) return;
+  const int leg = reference_.path.at(reached_s_).leg;
   replan_from_ = time + kReplanPeriod;
   const double end = reference_.path.leg_range(leg).second;
   for (int i = 0; i < kReplanPlaces; ++i) {

@@ -55,6 +55,7 @@ class PlanDriver {
   bool at_stage_end() const;
   bool take_up_path(double time);
   double spare() const;
+  bool may_replan(double time) const;
   void check_reserve(double time);
   void go_on_by(VehiclePlan anew, int first_leg, double ahead, double time);
   void arrive(double time);

@@ -130,6 +130,35 @@ TEST(Arbiter, WaitsTheLongerTheScarcerTheEnergyAndTheSparserTheCrowd) {
   EXPECT_NEAR(seconds_until_takeover(0.0, crowd), 0.0, 1e-9) << "a crowd does not clear";
 }
 
+TEST(Arbiter, APauseIsNoWait) {
+  ArbiterView scarce;
+  scarce.spare_ratio = 0.0;
+  Road waiting;
+  EXPECT_EQ(waiting.ask(kInTheWay, scarce), Driving::kPath);
+  waiting.time += 300.0;
+  EXPECT_EQ(waiting.ask(kInTheWay, scarce), Driving::kPath) << "he may have come just now";
+  waiting.time -= 200.0;
+  EXPECT_EQ(waiting.ask(kInTheWay, scarce), Driving::kPath) << "time went back";
+  int asked = 1;
+  while (waiting.ask(kInTheWay, scarce) == Driving::kPath && asked < 200) ++asked;
+  EXPECT_NEAR(0.2 * asked, waiting.arbiter.wait(0.0), 0.21);
+
+  Road back;
+  back.ask(kInTheWay);
+  back.ask(kNobody);
+  back.robot.pose.y = 1.5;
+  back.time += 300.0;
+  EXPECT_EQ(back.ask(kNobody), Driving::kLocal) << "free since now, as far as anybody knows";
+}
+
+TEST(Arbiter, ItsTimesMayBeNegative) {
+  Road road;
+  road.time = -1000.0;
+  EXPECT_EQ(road.ask(kInTheWay), Driving::kLocal);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(road.ask(kNobody), Driving::kLocal);
+  EXPECT_EQ(road.ask(kNobody), Driving::kPath);
+}
+
 TEST(Arbiter, KeepsToItsWordOnBadInputAndOldScenes) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Road road;

@@ -192,6 +192,37 @@ TEST(FailSafe, ARoverDoesNotTurnIntoSomebody) {
   EXPECT_LT(rolling.command.speed, 1.0);
 }
 
+TEST(FailSafe, ARoverWithALongTailSweepsNobodyWithIt) {
+  Vehicle with_nose = rover();
+  with_nose.footprint = {2.5, 0.5, 1.0};
+  Vehicle with_tail = rover();
+  with_tail.footprint = {0.5, 2.5, 1.0};
+  const Command left{0.0, 0.0, 0.5};
+  RandomStream random(6, "tails");
+  int stopped = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Point2 p(random.uniform(-5.0, 5.0), random.uniform(-4.0, 4.0));
+    const SafeCommand nose = limited(with_nose, {}, {agent_at(p.x(), p.y())}, left);
+    const SafeCommand tail = limited(with_tail, {}, {agent_at(-p.x(), -p.y())}, left);
+    EXPECT_NEAR(nose.allowed_speed, tail.allowed_speed, 1e-9) << p.transpose();
+    EXPECT_EQ(nose.reason, tail.reason) << p.transpose();
+    stopped += tail.allowed_speed == 0.0 ? 1 : 0;
+  }
+  EXPECT_GT(stopped, 50);
+}
+
+TEST(FailSafe, AStandHasNoCurve) {
+  const Vehicle vehicle = rover();
+  const std::vector<Agent> agents = {agent_at(1.6, 0.0)};
+  for (const double speed : {0.02, 1e-9, 1e-320}) {
+    VehicleState turning = moving(speed);
+    turning.yaw_rate = 0.5;
+    const SafeCommand safe = limited(vehicle, turning, agents, {1.0, 0.0, 0.0});
+    EXPECT_EQ(safe.reason, SafetyReason::kAgent);
+    EXPECT_EQ(safe.command.yaw_rate, 0.0) << speed;
+  }
+}
+
 TEST(FailSafe, NeverSpeedsUpAndKeepsTheCurve) {
   RandomStream random(3, "commands");
   for (const Vehicle& vehicle : {field_robot(), tractor(), rover()}) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "local_planner/mcts/mcts_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "local_planner/prediction/constant_velocity.hpp"
 #include "local_planner/prediction/orca_predictor.hpp"
 #include "tests/local_planner/episode.hpp"
 #include "tests/local_planner/planner_laws.hpp"
@@ -23,6 +25,19 @@ class CountingClock : public Clock {
  private:
   mutable double time_ = 0.0;
 };
+
+class StillClock : public Clock {
+ public:
+  double now() const override { return 0.0; }
+};
+
+bool same_states(const LocalPlan& a, const LocalPlan& b) {
+  return std::equal(a.states.begin(), a.states.end(), b.states.begin(), b.states.end(),
+                    [](const VehicleState& x, const VehicleState& y) {
+                      return x.pose.x == y.pose.x && x.pose.y == y.pose.y &&
+                             x.pose.yaw == y.pose.yaw && x.speed == y.speed;
+                    });
+}
 
 LocalGoal straight_on(double x, double accuracy = 1.0) {
   return {nullptr, 0.0, {x, 0.0}, accuracy, 1.2};
@@ -108,6 +123,83 @@ TEST(MctsPlanner, BrakesWhereNothingElseIsLeft) {
   LocalPlan plan;
   planner.plan(scene, straight_on(20.0), {200, {}}, plan);
   EXPECT_LT(plan.states.back().pose.x, 3.7 - vehicle.footprint.front_m);
+}
+
+TEST(MctsPlanner, BrakesWhereEvenBrakingIsTooLate) {
+  const Vehicle vehicle = test::field_robot();
+  LocalScene scene;
+  scene.robot.state.speed = 1.0;
+  scene.robot.state.pose.yaw = deg_to_rad(15.0);
+  const double ahead = 0.5 * (vehicle.footprint.front_m - vehicle.footprint.rear_m);
+  const Point2 centre = scene.robot.state.pose * Point2(ahead, 0.0);
+  LocalPlan plan;
+  for (int i = 0; i < 60; ++i) {
+    const Point2 near = centre + (0.9 + 0.02 * i) * Point2(1.0, 1.0);
+    for (const Polygon& wall : {test::box(near.x(), -30.0, near.x() + 1.0, 30.0),
+                                test::box(-30.0, near.y(), 30.0, near.y() + 1.0)}) {
+      const ClearanceMap map = ClearanceMap::of({wall});
+      scene.map = &map;
+      MctsPlanner(vehicle, {}).plan(scene, straight_on(20.0), {200, {}}, plan);
+      EXPECT_TRUE(test::is_drivable(vehicle, scene, plan)) << near.transpose();
+    }
+  }
+}
+
+TEST(MctsPlanner, ItsPatienceBeginsAnewAfterAPause) {
+  const Vehicle vehicle = test::field_robot();
+  const std::vector<Agent> agents{test::agent_at(5.0, 0.4), test::agent_at(5.5, -2.0)};
+  LocalScene scene;
+  scene.agents = agents;
+  const auto plan_at = [&](MctsPlanner& planner, double time) {
+    scene.time_s = time;
+    LocalPlan plan;
+    planner.plan(scene, straight_on(16.0), {300, {}}, plan);
+    return plan;
+  };
+  MctsPlanner planner(vehicle, {});
+  plan_at(planner, 0.0);
+  MctsPlanner fresh(vehicle, {});
+  const LocalPlan paused = plan_at(planner, 300.0);
+  const LocalPlan anew = plan_at(fresh, 300.0);
+  EXPECT_EQ(paused.cost, anew.cost);
+  EXPECT_TRUE(same_states(paused, anew));
+  const LocalPlan backwards = plan_at(planner, 100.0);
+  EXPECT_EQ(backwards.cost, anew.cost) << "time went back";
+  MctsPlanner waiting(vehicle, {});
+  for (int i = 0; i < 30; ++i) plan_at(waiting, 0.5 * i);
+  EXPECT_NE(plan_at(waiting, 15.0).cost, anew.cost) << "it has been waiting";
+}
+
+// Seen where he was half a second ago, somebody is where his velocity has brought him.
+TEST(MctsPlanner, MovesAgentsOnByTheAgeOfTheScene) {
+  const Vehicle vehicle = test::field_robot();
+  for (const bool predicts : {false, true}) {
+    const auto plan_for = [&](const Point2& position, double age) {
+      MctsPlanner planner(vehicle, {},
+                          predicts ? std::make_unique<ConstantVelocityPredictor>() : nullptr);
+      const std::vector<Agent> agents{test::agent_at(position.x(), position.y(), 0.0, -1.0)};
+      const LocalScene scene{10.0, VehicleState{{0.0, 0.0, 0.0}, 1.0, 0.0, 0.0}, agents, nullptr,
+                             age};
+      planner.observe(scene);
+      LocalPlan plan;
+      planner.plan(scene, straight_on(16.0), {200, {}}, plan);
+      return plan;
+    };
+    const LocalPlan old = plan_for({5.0, 1.5}, 0.5);
+    const LocalPlan anew = plan_for({5.0, 1.0}, 0.0);
+    EXPECT_NEAR(old.cost, anew.cost, 1e-3) << predicts;
+    EXPECT_GT(std::abs(plan_for({5.0, 1.5}, 0.0).cost - anew.cost), 0.05) << predicts;
+  }
+}
+
+TEST(MctsPlanner, EndsOnAClockThatStandsStill) {
+  MctsConfig config;
+  config.depth_count = 1;
+  MctsPlanner planner(test::field_robot(), config);
+  const StillClock clock;
+  LocalPlan plan;
+  planner.plan({}, straight_on(10.0), {0, Deadline::in(&clock, 0.05)}, plan);
+  EXPECT_EQ(plan.expansions, 2000000);
 }
 
 TEST(MctsPlanner, StopsAtItsDeadline) {

@@ -56,6 +56,15 @@ TEST(CrowdStudy, HasACellForEachPlannerWithPeopleWhoSeeAndWhoDoNot) {
   EXPECT_TRUE(result->files.empty());
 }
 
+TEST(CrowdStudy, APlannerThatIsNamedTwiceIsAnError) {
+  CrowdStudyConfig config = small();
+  config.planners.push_back(config.planners.front());
+  const auto result = run_crowd_study(config);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::kOutOfRange);
+  EXPECT_EQ(result.error().where.key, "planners");
+}
+
 TEST(CrowdStudy, FilmsEpisodesOfEachPlanner) {
   StudyRun run;
   run.films_count = 3;

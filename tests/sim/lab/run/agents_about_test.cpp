@@ -221,6 +221,24 @@ TEST(AgentsAbout, APlanWithoutAnAnswerIsKept) {
   EXPECT_EQ(run.vehicles.front().driven.legs.size(), 3u);
 }
 
+// A leg that begins within a minute of the last attempt is checked when that minute is over.
+TEST(AgentsAbout, TheReserveOfEachLegIsChecked) {
+  VehiclePlan plan = straight_on(LegKind::kTransit, 3);
+  plan.vehicle.transit_speed_mps = 0.5;
+  plan.start_soc = 0.101;
+  std::vector<Standing> asked;
+  RunHooks hooks;
+  hooks.replan = [&](std::size_t, const VehiclePlan&,
+                     const Standing& standing) -> Result<VehiclePlan> {
+    if (asked.empty() || standing.time_s > asked.back().time_s) asked.push_back(standing);
+    return tl::unexpected<Error>({ErrorCode::kEnergyInfeasible, "no", "", {}});
+  };
+  drive(plan, with(walkers(1)), hooks);
+  ASSERT_GE(asked.size(), 2u);
+  EXPECT_EQ(asked[1].next_leg, 2);
+  EXPECT_NEAR(asked[1].time_s, asked[0].time_s + 60.0, 0.2);
+}
+
 TEST(AgentsAbout, ARunThatIsStoppedTellsWhatItDrove) {
   int looks = 0;
   RunHooks hooks;
