@@ -15,7 +15,7 @@ constexpr int kLeastGroundCells = 12;  // of a metre
 constexpr int kLeastLanePoints = 20;
 constexpr double kNearAhead = 4.0;      // [m]
 constexpr double kBehindSensor = 1.0;   // [m]
-constexpr double kBeside = 0.25;        // [m]
+constexpr double kBeside = 0.0;         // [m]
 constexpr double kBesideSensor = 0.75;  // [m]
 constexpr double kWidestHeading = 0.6;  // of a lane the robot drives in [rad]
 
@@ -171,7 +171,7 @@ RowEstimate RowDetector::update_joint(const std::vector<LidarPoint>& points_base
     }
   }
   const RowEnd end = end_finder_.end();
-  if (end.seen && end.distance_m < 0.0) {
+  if (end.seen && end.distance_m < end.deviation_m) {
     tracker_.reset();
     if (status == RowStatus::kValid || status == RowStatus::kUnconfirmed) {
       status = RowStatus::kBehindRowEnd;

@@ -150,7 +150,8 @@ double Planter::density(double s, double across, double z, double outline) const
   const double side = across / config_.canopy_half_width_m;
   if (std::abs(up) > 0.5 + 0.5 * outline || std::abs(side) > outline) return 0.0;
   const double apart = 2.0 * std::abs(slots - static_cast<double>(slot) - 0.5);  // 1: half way
-  const double wood = std::abs(side) < 0.5 ? config_.branch_area_density_1pm : 0.0;
+  // The margin: places at +0.5 and -0.5 shall not differ by rounding.
+  const double wood = std::abs(side) < 0.5 - 1e-9 ? config_.branch_area_density_1pm : 0.0;
   return (config_.leaf_area_density_1pm + wood) * (1.0 - config_.crown_ratio * apart * apart);
 }
 
