@@ -88,13 +88,16 @@ void Tree::reset(const Motion& root) {
   nodes_.front().motion = root;
 }
 
-int Tree::advance(int action, const Motion& root, double keep) {
-  int from = -1;
-  if (!nodes_.empty()) {
-    for (int slot = 0; slot < node(0).children; ++slot) {
-      if (node(child(node(0), slot)).action == action) from = child(node(0), slot);
-    }
+// Its child by that action; -1: there is none.
+int Tree::child_by(const Node& n, int action) const {
+  for (int slot = 0; slot < n.children; ++slot) {
+    if (node(child(n, slot)).action == action) return child(n, slot);
   }
+  return -1;
+}
+
+int Tree::advance(int action, const Motion& root, double keep) {
+  const int from = nodes_.empty() ? -1 : child_by(node(0), action);
   if (from < 0) return 0;
   std::vector<Node> kept{node(from)};
   std::vector<std::array<std::int32_t, Manoeuvres::kCount>> blocks;
@@ -105,6 +108,7 @@ int Tree::advance(int action, const Motion& root, double keep) {
     copy.visits *= keep;
     copy.level = static_cast<std::int8_t>(copy.level - 1);
     copy.fresh = false;
+    if (copy.tried > copy.children) copy.tried = 0;  // what was refused may be possible now
     if (copy.parent == 0) copy.first = copy.action;
     if (copy.parent > 0) copy.first = kept[static_cast<std::size_t>(copy.parent)].first;
     if (copy.block >= 0) {
@@ -258,7 +262,7 @@ void Tree::begin(const Task& task) {
   root.closed = false;
   root.fresh = true;
   const int guess = task.moves->towards(root.motion, task.goal.x(), task.goal.y(), task.wanted);
-  if (root.children == 0) root.guess = static_cast<std::int8_t>(guess);
+  if (root.tried == 0) root.guess = static_cast<std::int8_t>(guess);
   root.first = static_cast<std::int8_t>(guess);
   close_with_rollout(task, root);
   root.best = root.own;
@@ -280,6 +284,7 @@ bool Tree::add_child(const Task& task, int number) {
   Node n;
   n.action = static_cast<std::int8_t>(Manoeuvres::nearest(parent.guess, parent.tried));
   ++parent.tried;
+  if (child_by(parent, n.action) >= 0) return false;
   n.parent = static_cast<std::int32_t>(number);
   n.level = static_cast<std::int8_t>(parent.level + 1);
   n.first = parent.parent < 0 ? n.action : parent.first;

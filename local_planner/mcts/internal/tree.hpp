@@ -100,6 +100,7 @@ class Tree {
   int child(const Node& n, int slot) const {
     return blocks_[static_cast<std::size_t>(n.block)][static_cast<std::size_t>(slot)];
   }
+  int child_by(const Node& n, int action) const;
   Judged judge(const Task& task, int first, int level, const Motion& from, const Motion& to) const;
   struct Rolled {
     double cost = 0.0;
