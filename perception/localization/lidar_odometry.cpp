@@ -269,6 +269,7 @@ void LidarOdometry::leave_weak_directions(Match& match) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turns(
       rotation - mixed.transpose() * (position + least).inverse() * mixed);
   const double variance = squared(config_.map.noise_m);
+  const double enough = std::max(config_.weak_count, config_.weak_ratio * match.points);
   estimate_.support = shifts.eigenvalues() * variance;
   estimate_.directions = shifts.eigenvectors();
   estimate_.weak_directions = 0;
@@ -276,11 +277,11 @@ void LidarOdometry::leave_weak_directions(Match& match) {
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d shift = shifts.eigenvectors().col(i);
     const Eigen::Vector3d turn = turns.eigenvectors().col(i);
-    if (estimate_.support(i) < config_.weak_count) {
+    if (estimate_.support(i) < enough) {
       ++estimate_.weak_directions;
       keep.topLeftCorner<3, 3>() -= shift * shift.transpose();
     }
-    if (turns.eigenvalues()(i) * variance < config_.weak_count * squared(kTurnArm)) {
+    if (turns.eigenvalues()(i) * variance < enough * squared(kTurnArm)) {
       keep.bottomRightCorner<3, 3>() -= turn * turn.transpose();
     }
   }

@@ -27,6 +27,7 @@ struct LidarOdometryConfig {
   int iteration_count = 8;
   double kernel_ratio = 3.0;
   double weak_count = 15.0;
+  double weak_ratio = 0.03;
   double least_position_noise_m = 0.004;
   double least_rotation_noise_deg = 0.03;
   double wheel_noise_mps = 0.1;
@@ -50,6 +51,9 @@ struct LidarOdometryConfig {
     v("weak_count", weak_count, config::kNonNegative,
       "A direction that fewer matched points tell of is left to wheels and inertial unit (points "
       "that face it fully)");
+    v("weak_ratio", weak_ratio, config::kFraction,
+      "Likewise as a share of all points matched: so many face a direction by their noise alone, "
+      "which in foliage ties the scan to where it was predicted to be");
     v("least_position_noise_m", least_position_noise_m, config::kPositive,
       "No scan tells the position better: points of one surface err together [m]");
     v("least_rotation_noise_deg", least_rotation_noise_deg, config::kPositive,
