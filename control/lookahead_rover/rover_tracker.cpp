@@ -13,7 +13,11 @@ constexpr double kStanding = 1e-3;  // slower counts as standing [m/s]
 
 RoverTracker::RoverTracker(const Vehicle& vehicle, const RoverTrackerConfig& config,
                            const SpeedLimitConfig& limits)
-    : vehicle_(vehicle), config_(config), limits_(limits), filter_(config.filter) {}
+    : vehicle_(vehicle),
+      config_(config),
+      limits_(limits),
+      filter_(config.filter),
+      ramp_(vehicle.acceleration_mps2) {}
 
 Result<void> RoverTracker::do_start() {
   profile_.build(reference(), vehicle_.acceleration_mps2,
@@ -24,6 +28,7 @@ Result<void> RoverTracker::do_start() {
   s_ = 0.0;
   standing_left_ = 0.0;
   has_last_ = false;
+  ramp_.reset();
   return {};
 }
 
@@ -61,7 +66,7 @@ RoverTracker::Errors RoverTracker::errors(const VehicleState& measured, const Po
 // Lateral error e and heading error psi over the driven distance s obey e' = g sin(psi) and
 // psi' = (turn of the vehicle) - (turn of the path), with g the gear's sign; the feedback makes
 // e'' + 2 zeta k e' + k^2 e = 0 of them, with the approach angle bounded.
-Command RoverTracker::drive(const VehicleState& measured, const Errors& errors, double dt) const {
+Command RoverTracker::drive(const VehicleState& measured, const Errors& errors, double dt) {
   const Gear gear = reference().path.segments()[static_cast<std::size_t>(segment_)].gear;
   const double k = config_.stiffness_1pm;
   const double damping = 2.0 * config_.damping_ratio * k;
@@ -69,16 +74,17 @@ Command RoverTracker::drive(const VehicleState& measured, const Errors& errors, 
   const double approach =
       -sign(gear) * std::clamp(k * k / damping * errors.nearest.lateral_error, -steepest, steepest);
   const double wanted = profile_.limit(errors.nearest.s, segment_, dt);
-  const double most = vehicle_.acceleration_mps2 * dt;
   const double now = std::abs(measured.speed);
-  double speed = std::clamp(wanted, now - most, now + most);
+  const auto [low, high] = ramp_.reach(now, dt);
+  double speed = std::clamp(wanted, low, high);
   // At lateral error e the vehicle drives the path's turn on another radius.
   const double stretch = 1.0 - sign(gear) * errors.path_turn * errors.nearest.lateral_error;
   const double curvature =
       errors.path_turn / std::max(0.2, stretch) - damping * (errors.heading - approach);
   if (speed * std::abs(curvature) > config_.max_yaw_rate_radps) {
-    speed = std::max(config_.max_yaw_rate_radps / std::abs(curvature), now - most);
+    speed = std::max(config_.max_yaw_rate_radps / std::abs(curvature), low);
   }
+  ramp_.tell(speed);
   const double rate =
       std::clamp(speed * curvature, -config_.max_yaw_rate_radps, config_.max_yaw_rate_radps);
   const double told = command_through_lag(speed, now, vehicle_.speed_lag_s, dt);
@@ -86,7 +92,8 @@ Command RoverTracker::drive(const VehicleState& measured, const Errors& errors, 
 }
 
 // Brakes, then turns on the spot: the last cycles bring the error down by a quarter each.
-Command RoverTracker::pivot(const VehicleState& measured, const Errors& errors, double dt) const {
+Command RoverTracker::pivot(const VehicleState& measured, const Errors& errors, double dt) {
+  ramp_.reset();
   const double most = vehicle_.acceleration_mps2 * dt;
   const double speed = measured.speed - std::clamp(measured.speed, -most, most);
   if (std::abs(measured.speed) > kStanding) return {speed, 0.0, 0.0};
@@ -106,6 +113,7 @@ TrackOutput RoverTracker::do_step(const VehicleEstimate& estimate, double dt) {
     standing_left_ -= dt;
     if (standing_left_ > 0.0) return stand(TrackStatus::kGearChange);
     ++segment_;
+    ramp_.reset();
     mode_ = Mode::kDriving;
   }
   const Errors e = errors(measured, position, dt);

@@ -4,6 +4,7 @@
 #include "control/position_filter.hpp"
 #include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
+#include "control/speed_ramp.hpp"
 #include "control/tracker.hpp"
 #include "core/config/visit.hpp"
 #include "core/model/vehicle.hpp"
@@ -84,14 +85,15 @@ class RoverTracker : public Tracker {
 
   Point2 odometry(const VehicleState& measured, double dt) const;
   Errors errors(const VehicleState& measured, const Point2& position, double dt) const;
-  Command drive(const VehicleState& measured, const Errors& errors, double dt) const;
-  Command pivot(const VehicleState& measured, const Errors& errors, double dt) const;
+  Command drive(const VehicleState& measured, const Errors& errors, double dt);
+  Command pivot(const VehicleState& measured, const Errors& errors, double dt);
   TrackOutput stand(TrackStatus status) const { return {{}, status, s_}; }
 
   Vehicle vehicle_;
   RoverTrackerConfig config_;
   SpeedLimitConfig limits_;
   PositionFilter filter_;
+  SpeedRamp ramp_;
   SpeedProfile profile_;
   Mode mode_ = Mode::kDone;
   int segment_ = 0;

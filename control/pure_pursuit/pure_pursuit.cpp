@@ -15,7 +15,11 @@ constexpr double kStill = 1e-3;  // slower counts as standing [m/s]
 
 PurePursuit::PurePursuit(const Vehicle& vehicle, const PurePursuitConfig& config,
                          const SpeedLimitConfig& limits)
-    : vehicle_(vehicle), config_(config), limits_(limits), filter_(config.filter) {}
+    : vehicle_(vehicle),
+      config_(config),
+      limits_(limits),
+      filter_(config.filter),
+      ramp_(vehicle.acceleration_mps2) {}
 
 Result<void> PurePursuit::do_start() {
   profile_.build(reference(), vehicle_.acceleration_mps2,
@@ -27,6 +31,7 @@ Result<void> PurePursuit::do_start() {
   gear_left_ = 0.0;
   changing_gear_ = false;
   has_last_ = false;
+  ramp_.reset();
   steering_left_ = longest_steering(vehicle_);
   return {};
 }
@@ -101,6 +106,7 @@ TrackOutput PurePursuit::arrive(const VehicleState& measured) {
     return stop(measured, still ? TrackStatus::kDone : TrackStatus::kTracking);
   }
   progress_.next_segment();
+  ramp_.reset();
   mode_ = Mode::kStanding;
   changing_gear_ = true;
   gear_left_ = vehicle_.gear_change_s;
@@ -117,11 +123,12 @@ TrackOutput PurePursuit::drive(const VehicleState& measured, const Pose2& pose, 
   if (left <= config_.stop_tolerance_m) return arrive(measured);
   progress_.move_to(nearest.s);
 
-  const double most = vehicle_.acceleration_mps2 * dt;
   const double direction = sign(now.gear);
   const double v = std::max(0.0, direction * measured.speed);
   const double wanted = profile_.limit(now.end_s - left, progress_.number(), dt);
-  const double speed = std::max(0.0, std::clamp(wanted, v - most, v + most));
+  const auto [low, high] = ramp_.reach(v, dt);
+  const double speed = std::max(0.0, std::clamp(wanted, low, high));
+  ramp_.tell(speed);
 
   // Where the vehicle will be in the middle of the cycle that this command acts on.
   const double ahead = v * config_.dead_time_s + 0.5 * (v + speed) * 0.5 * dt;

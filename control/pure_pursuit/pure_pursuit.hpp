@@ -6,6 +6,7 @@
 #include "control/pure_pursuit/steering_plan.hpp"
 #include "control/speed_limits.hpp"
 #include "control/speed_profile.hpp"
+#include "control/speed_ramp.hpp"
 #include "control/tracker.hpp"
 #include "core/config/visit.hpp"
 #include "core/model/vehicle.hpp"
@@ -89,6 +90,7 @@ class PurePursuit : public Tracker {
   PurePursuitConfig config_;
   SpeedLimitConfig limits_;
   PositionFilter filter_;
+  SpeedRamp ramp_;
   SpeedProfile profile_;
   SteeringPlan plan_;
   Mode mode_ = Mode::kDone;

@@ -10,6 +10,7 @@
 #include "core/geometry/pose2.hpp"
 #include "core/model/charge_curve.hpp"
 #include "core/model/energy.hpp"
+#include "core/model/sensor_mount.hpp"
 
 namespace headland {
 
@@ -87,6 +88,7 @@ struct Vehicle {
   Footprint footprint;
   EnergyModel energy;
   Battery battery;
+  std::optional<SensorMount> lidar;
 
   double max_steering_rad() const { return deg_to_rad(max_steering_deg); }
   /// Radius used for planning [m]: the larger of what the steering allows and min_turning_radius_m.
@@ -142,6 +144,7 @@ struct Vehicle {
     v("footprint", footprint, "Outline");
     v("energy", energy, "What driving and working draws");
     v("battery", battery, "Energy store and charging");
+    v("lidar", lidar, "Where its lidar sits; left out: it has none");
   }
 };
 

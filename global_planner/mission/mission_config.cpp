@@ -130,6 +130,7 @@ Result<MissionVehicle> load_vehicle(const MissionVehicleConfig& config, const Fa
   auto vehicle = config::load<Vehicle>(resolve_path(config.model, directory));
   if (!vehicle) return tl::unexpected<Error>(vehicle.error());
   if (config.capacity_wh) vehicle->battery.capacity_wh = *config.capacity_wh;
+  if (config.lidar) vehicle->lidar = config.lidar;
   if (config.payload_kg) vehicle->energy.payload_kg = *config.payload_kg;
   const double reserve = vehicle->battery.reserve_soc;
   if (config.soc < reserve) {

@@ -45,6 +45,7 @@ struct MissionVehicleConfig {
   std::optional<double> capacity_wh;
   std::optional<double> payload_kg;
   std::optional<double> shift_s;
+  std::optional<SensorMount> lidar;
 
   template <class V>
   void visit(V& v) {
@@ -57,6 +58,7 @@ struct MissionVehicleConfig {
       "Replaces the model's battery capacity [Wh]");
     v("payload_kg", payload_kg, config::Range{0.0, 1e5}, "Replaces the model's payload [kg]");
     v("shift_s", shift_s, config::Range{1.0, 1e7}, "It is back at its finish by then [s]");
+    v("lidar", lidar, "A lidar is fitted here, in place of the model's");
   }
 };
 

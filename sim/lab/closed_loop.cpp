@@ -84,7 +84,10 @@ Result<FleetRun> drive_fleet(const std::vector<VehiclePlan>& plans,
     predictor = std::move(*factory);
   }
   std::optional<LidarScene> scene;
-  if (config.perception.enabled) {
+  const bool perceives = std::any_of(plans.begin(), plans.end(), [](const VehiclePlan& plan) {
+    return plan.vehicle.lidar.has_value();
+  });
+  if (config.perception.enabled && perceives) {
     scene = LidarScene::orchard(farm, ground, plants_of(config.perception.crop), config.seed);
   }
   ChargerSlots slots(farm);

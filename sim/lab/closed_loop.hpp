@@ -27,6 +27,7 @@ struct SimulationConfig {
   std::uint64_t seed = 1;
   double row_tolerance_m = 0.3;
   double max_deviation_m = 3.0;
+  double max_lost_s = 60.0;
   double trace_period_s = 0.1;
   SensorConfig sensors;
   SlipConfig slip;
@@ -43,6 +44,8 @@ struct SimulationConfig {
       "A row counts as done if the cross-track error stayed within this [m]");
     v("max_deviation_m", max_deviation_m, config::kPositive,
       "The run is given up when the vehicle follows its path and is farther than this from it [m]");
+    v("max_lost_s", max_lost_s, config::kPositive,
+      "A vehicle that does not know its pose stands, and gives up after this [s]");
     v("trace_period_s", trace_period_s, config::kNonNegative,
       "Between the lines of trace.csv and the messages of run.mcap [s]; 0: every step");
     v("sensors", sensors, "Sensor errors");
@@ -50,7 +53,7 @@ struct SimulationConfig {
     v("control", control, "The trackers");
     v("agents", agents, "People and animals about; none: the local layer is not needed");
     v("local", local, "The local layer, where there are agents");
-    v("perception", perception, "What the vehicles' lidars see");
+    v("perception", perception, "What vehicles with a lidar see");
   }
 };
 

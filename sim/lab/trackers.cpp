@@ -28,7 +28,9 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
   if (control.tracker == TrackerKind::kRhmc) {
     return std::make_unique<HorizonTracker>(vehicle, control.rhmc, cycle, clock, control.limits);
   }
-  const bool estimated = control.estimator != EstimatorKind::kSensors;
+  const bool tells_slip =
+      control.estimator == EstimatorKind::kEkf || control.estimator == EstimatorKind::kRhe;
+  const bool estimated = tells_slip || control.estimator == EstimatorKind::kLocalizer;
   for (PositionFilterConfig* filter : {&control.pure_pursuit.filter, &control.rover.filter}) {
     if (estimated) {
       filter->fix_accuracy_m = 0.0;
@@ -47,14 +49,16 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
     tracker =
         std::make_unique<KinematicsAdapter>(vehicle, make_own(twin, control.tracker, control));
   }
-  if (!estimated) return tracker;
+  if (!tells_slip) return tracker;
   return std::make_unique<SlipCompensation>(vehicle, std::move(tracker));
 }
 
 std::unique_ptr<Estimator> make_estimator(const Vehicle& vehicle, const ControlConfig& control,
                                           double cycle) {
   switch (control.estimator) {
+    case EstimatorKind::kAuto:
     case EstimatorKind::kSensors:
+    case EstimatorKind::kLocalizer:
       break;
     case EstimatorKind::kEkf:
       return std::make_unique<EkfEstimator>(vehicle, control.estimation, cycle);

@@ -24,15 +24,17 @@ enum class TrackerKind {
 };
 
 enum class EstimatorKind {
-  kSensors,  ///< none: the sensors' last word, and no slip
-  kEkf,
-  kRhe
+  kAuto,      ///< localizer where the vehicle perceives, else sensors
+  kSensors,   ///< none: the sensors' last word, and no slip
+  kEkf,       ///< with slip
+  kRhe,       ///< with slip
+  kLocalizer  ///< GNSS, wheels, gyroscope and lidar odometry; no slip
 };
 
 /// Who drives, on whose word, and their settings.
 struct ControlConfig {
   TrackerKind tracker = TrackerKind::kAuto;
-  EstimatorKind estimator = EstimatorKind::kSensors;
+  EstimatorKind estimator = EstimatorKind::kAuto;
   PurePursuitConfig pure_pursuit;
   RoverTrackerConfig rover;
   HorizonConfig rhmc;
@@ -60,7 +62,7 @@ std::unique_ptr<Tracker> make_tracker(const Vehicle& vehicle, ControlConfig cont
                                       const SensorConfig& sensors, double cycle,
                                       const Clock* clock = nullptr);
 
-/// Null for kSensors.
+/// Of those that need no lidar; null for kSensors, and for kAuto and kLocalizer (see Senses).
 std::unique_ptr<Estimator> make_estimator(const Vehicle& vehicle, const ControlConfig& control,
                                           double cycle);
 
@@ -78,7 +80,9 @@ struct headland::config::EnumNames<headland::TrackerKind> {
 template <>
 struct headland::config::EnumNames<headland::EstimatorKind> {
   static constexpr std::pair<headland::EstimatorKind, std::string_view> values[] = {
+      {headland::EstimatorKind::kAuto, "auto"},
       {headland::EstimatorKind::kSensors, "sensors"},
       {headland::EstimatorKind::kEkf, "ekf"},
-      {headland::EstimatorKind::kRhe, "rhe"}};
+      {headland::EstimatorKind::kRhe, "rhe"},
+      {headland::EstimatorKind::kLocalizer, "localizer"}};
 };

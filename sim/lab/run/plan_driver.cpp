@@ -44,6 +44,13 @@ const char* describe(TrackStatus failure) {
   return "the tracker stopped";
 }
 
+// With the estimator that this vehicle has.
+ControlConfig control_of(const Vehicle& vehicle, const SimulationConfig& config) {
+  ControlConfig control = config.control;
+  control.estimator = estimator_for(vehicle, control, config.perception);
+  return control;
+}
+
 // Whether the plan has any row or visit.
 bool works(const VehiclePlan& plan) {
   return std::any_of(plan.legs.begin(), plan.legs.end(), [](const PlanLeg& leg) {
@@ -59,6 +66,7 @@ PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Vi
                        const PredictorFactory& predictor, const LidarScene* scene,
                        const RunHooks& hooks)
     : number_(number),
+      control_(control_of(plan.vehicle, config)),
       given_(plan),
       plan_(plan),
       visits_(visits),
@@ -68,22 +76,17 @@ PlanDriver::PlanDriver(int number, const VehiclePlan& plan, const std::vector<Vi
       slots_(slots),
       vehicle_(plan.vehicle, plan.start, plan.start_soc, {config.sensors, config.slip},
                config.seed + static_cast<std::uint64_t>(number), config.step_s, ground),
-      tracker_(
-          make_tracker(plan.vehicle, config.control, config.sensors, config.step_s, hooks.clock)),
-      estimator_(make_estimator(plan.vehicle, config.control, config.step_s)),
+      tracker_(make_tracker(plan.vehicle, control_, config.sensors, config.step_s, hooks.clock)),
+      senses_(plan.vehicle, control_, config.perception, scene, config.step_s,
+              config.seed + static_cast<std::uint64_t>(number)),
       hooks_(hooks) {
   if (obstacles != nullptr) {
     local_ = std::make_unique<LocalLayer>(plan.vehicle, config.local, predictor, *obstacles,
                                           config.seed + static_cast<std::uint64_t>(number),
                                           config.step_s);
   }
-  if (scene != nullptr) {
-    sight_ =
-        std::make_unique<RowSight>(plan.vehicle, config.perception, *scene,
-                                   config.seed + static_cast<std::uint64_t>(number), config.step_s);
-  }
   fit_to_legs();
-  if (estimator_ != nullptr) estimator_->reset(vehicle_.truth(), 0.0);
+  senses_.begin(vehicle_.truth());
   begin_stage(0.0);
 }
 
@@ -153,7 +156,7 @@ void PlanDriver::follow(const Path& path, double time) {
   progress_s_ = 0.0;
   reached_s_ = 0.0;
   reference_ = Reference{path, leg_speed_, {}, leg_working_};  // the tracker points to it
-  reference_.zones = energy_zones(reference_, plan_.vehicle, config_.control.limits, ground_);
+  reference_.zones = energy_zones(reference_, plan_.vehicle, control_.limits, ground_);
   if (const auto started = tracker_->start(reference_); !started) {
     return give_up(started.error().what, time);
   }
@@ -162,22 +165,12 @@ void PlanDriver::follow(const Path& path, double time) {
 
 // What the vehicle knows of itself at `time` [s], at a stand too.
 void PlanDriver::observe(double time) {
-  if (estimator_ != nullptr) {
-    known_ = estimator_->update(vehicle_.sense(time), told_, time).vehicle;
-  } else if (state_ == State::kDriving) {
-    known_ = vehicle_.measure();
-  }
-  if (sight_ != nullptr && state_ == State::kDriving) look_at_row(time);
-}
-
-// In a row the lidar tells where its middle is.
-void PlanDriver::look_at_row(double time) {
+  const bool driving = state_ == State::kDriving;
+  senses_.step(time, vehicle_, told_, agents_, !driving);
+  if (!driving) return;
   const int leg = reference_.path.at(reached_s_).leg;
-  if (leg != sight_leg_) {
-    sight_leg_ = leg;
-    sight_->begin_row(row_width(plan_.legs[static_cast<std::size_t>(leg)]));
-  }
-  sight_->step(time, vehicle_.truth(), reference_.path, reached_s_, known_);
+  senses_.look_at_row(time, vehicle_.truth().pose, reference_.path, reached_s_, leg,
+                      row_width(plan_.legs[static_cast<std::size_t>(leg)]));
 }
 
 // Between the plants beside a row; 0 where the leg is none.
@@ -194,7 +187,8 @@ double PlanDriver::row_width(const PlanLeg& leg) const {
 void PlanDriver::drive(double time) {
   LocalOutput local;
   if (local_ != nullptr) {
-    local = local_->step(time - config_.step_s, known_, local_goal(), local_view(time), agents_);
+    local = local_->step(time - config_.step_s, senses_.known(), local_goal(), local_view(time),
+                         agents_);
     if (local.gave_back && !take_up_path(time)) return;
   }
   const Point2 before = vehicle_.truth().pose.position();
@@ -203,7 +197,7 @@ void PlanDriver::drive(double time) {
     reached_s_ = nearest_s();
     if (at_stage_end()) return arrive(time);
   } else {
-    const TrackOutput output = tracker_->step(known_, config_.step_s);
+    const TrackOutput output = tracker_->step(senses_.known(), config_.step_s);
     told_ = local_ != nullptr ? local_->guard(output.command) : output.command;
     reached_s_ = output.s;
     if (output.stale) ++run_.metrics.stale_plan_count;
@@ -212,6 +206,8 @@ void PlanDriver::drive(double time) {
     }
     if (failed(output.status)) return give_up(describe(output.status), time);
   }
+  if (senses_.lost_for() > config_.max_lost_s) return give_up("its pose is not known", time);
+  if (senses_.lost_for() > 0.0) told_ = {};  // it stands until it knows where it is
   const int leg = reference_.path.at(reached_s_).leg;
   vehicle_.step(told_, plan_.legs[static_cast<std::size_t>(leg)].kind);
   record(before, local.driving, time);
@@ -266,13 +262,15 @@ double PlanDriver::nearest_s() const {
   const PathSegment& segment =
       path.segments()[static_cast<std::size_t>(path.at(reached_s_).segment)];
   const double ahead = std::min(reached_s_ + kWindow, segment.end_s - kOnCusp);
-  return path.project(known_.state.pose.position(), reached_s_, std::max(reached_s_, ahead)).s;
+  return path
+      .project(senses_.known().state.pose.position(), reached_s_, std::max(reached_s_, ahead))
+      .s;
 }
 
 // The local planner has brought the vehicle to where it stops.
 bool PlanDriver::at_stage_end() const {
   const Path& path = reference_.path;
-  const VehicleState& state = known_.state;
+  const VehicleState& state = senses_.known().state;
   return path.length() - reached_s_ < kPlaceAccuracy && std::abs(state.speed) < kStands &&
          (path.end_pose().position() - state.pose.position()).norm() < kPlaceAccuracy;
 }
@@ -317,7 +315,7 @@ void PlanDriver::check_reserve(double time) {
     const double ahead = i * kReplanSpacing;
     if (ahead > 0.0 && reached_s_ + ahead > end) break;
     const Pose2 pose =
-        ahead > 0.0 ? reference_.path.at(reached_s_ + ahead).pose : known_.state.pose;
+        ahead > 0.0 ? reference_.path.at(reached_s_ + ahead).pose : senses_.known().state.pose;
     auto anew = hooks_.replan(static_cast<std::size_t>(number_), plan_,
                               {pose, vehicle_.soc(), time, leg + 1});
     if (!anew || !works(*anew)) continue;
@@ -427,7 +425,8 @@ void PlanDriver::record(const Point2& before, Driving driving, double time) {
   run_.trace.push_back({time, truth.pose.x, truth.pose.y, truth.pose.yaw, truth.speed,
                         truth.steering, told_.yaw_rate, stage_start_s_ + projection.s,
                         projection.lateral_error, vehicle_.soc(), at.gear, at.leg, vehicle_.slip(),
-                        known_.slip, (known_.state.pose.position() - before).norm(), driving});
+                        senses_.known().slip,
+                        (senses_.known().state.pose.position() - before).norm(), driving});
   const auto leg = static_cast<std::size_t>(at.leg);
   worst_[leg] = std::max(worst_[leg], std::abs(projection.lateral_error));
   run_.leg_done[leg] = true;
@@ -450,7 +449,7 @@ void PlanDriver::give_up(const std::string& why, double time) {
 void PlanDriver::summarise() {
   RunMetrics& metrics = run_.metrics;
   if (local_ != nullptr) metrics.encounters = local_->metrics();
-  if (sight_ != nullptr) metrics.rows_seen = sight_->metrics();
+  metrics.rows_seen = senses_.rows_seen();
   for (std::size_t i = 0; i < run_.driven.legs.size(); ++i) count_leg(i);
   for (const PlanLeg& leg : given_.legs) count_dropped(leg);
   count_rows({&given_, 1}, {&run_, 1}, metrics);

@@ -8,7 +8,7 @@
 
 #include "sim/lab/closed_loop.hpp"
 #include "sim/lab/run/charger_slots.hpp"
-#include "sim/lab/run/row_sight.hpp"
+#include "sim/lab/run/senses.hpp"
 
 namespace headland {
 
@@ -16,8 +16,8 @@ namespace headland {
 /// where there are agents. All that it is given must outlive it.
 class PlanDriver {
  public:
-  /// `obstacles`, `predictor`: for the local layer; null: nobody is about. `scene`: what the lidar
-  /// sees; null: rows are driven by the map.
+  /// `obstacles`, `predictor`: for the local layer; null: nobody is about. `scene`: what a lidar
+  /// sees; null: vehicles do not perceive.
   PlanDriver(int number, const VehiclePlan& plan, const std::vector<Visit>& visits,
              const Farm& farm, const Ground& ground, const SimulationConfig& config,
              ChargerSlots& slots, const ClearanceMap* obstacles, const PredictorFactory& predictor,
@@ -46,7 +46,6 @@ class PlanDriver {
   void begin_stage(double time);
   void follow(const Path& path, double time);
   void observe(double time);
-  void look_at_row(double time);
   double row_width(const PlanLeg& leg) const;
   void drive(double time);
   LocalGoal local_goal() const;
@@ -70,6 +69,7 @@ class PlanDriver {
   void count_dropped(const PlanLeg& planned);
 
   int number_;
+  ControlConfig control_;
   const VehiclePlan& given_;
   VehiclePlan plan_;  // as it is driven
   const std::vector<Visit>& visits_;
@@ -79,13 +79,10 @@ class PlanDriver {
   ChargerSlots& slots_;
   SimulatedVehicle vehicle_;
   std::unique_ptr<Tracker> tracker_;
-  std::unique_ptr<Estimator> estimator_;
+  Senses senses_;
   std::unique_ptr<LocalLayer> local_;  // null: nobody is about
-  std::unique_ptr<RowSight> sight_;    // null: rows are driven by the map
-  int sight_leg_ = -1;                 // the row that is looked at
   const RunHooks& hooks_;
   std::span<const Agent> agents_;
-  VehicleEstimate known_;
   Command told_;  // at the last tick
   std::vector<double> leg_speed_;
   std::vector<bool> leg_working_;
