@@ -81,7 +81,7 @@ Result<FinishedStudy> run_study_file(const config::Node& node, int jobs, int max
   }
   if (name == "rows") {
     return run_as<RowsStudyConfig>(node, max_episodes, [&](const RowsStudyConfig& config) {
-      return run_rows_study(config, jobs);
+      return run_rows_study(config, folder_of(node), jobs);
     });
   }
   if (name == "tracking") {

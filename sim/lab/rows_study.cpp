@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "global_planner/mission/mission_config.hpp"
+#include "perception/cloud/cloud_file.hpp"
 #include "sim/lab/parallel.hpp"
 #include "sim/lab/statistics.hpp"
 
@@ -46,9 +48,29 @@ double deviation(const std::vector<double>& values) {
 
 double ratio(int part, int whole) { return whole > 0 ? static_cast<double>(part) / whole : 0.0; }
 
-Run run_scene(const RowsStudyConfig& config, const RowScenario& scenario, int number) {
+Result<std::vector<CanopyStrip>> read_strips(const ScannedPlants& scan,
+                                             const std::filesystem::path& folder) {
+  const auto cloud = load_cloud(resolve_path(scan.file, folder));
+  if (!cloud) return tl::unexpected<Error>(cloud.error());
+  std::vector<Eigen::Vector3f> points;
+  for (const LidarPoint& point : cloud->points) points.push_back(point.position);
+  std::vector<CanopyStrip> strips;
+  for (const double offset : scan.offsets_m) {
+    strips.push_back(cut_strip(points, deg_to_rad(scan.heading_deg), offset, scan.half_width_m));
+    if (strips.back().empty()) {
+      return fail(ErrorCode::kOutOfRange, fmt::format("no plant of {} lies there", scan.file),
+                  "offsets_m are the scanned rows' places", {{}, 0, "scan.offsets_m"});
+    }
+  }
+  return strips;
+}
+
+Run run_scene(const RowsStudyConfig& config, const RowScenario& scenario,
+              const std::vector<CanopyStrip>& strips, int number) {
   const auto seed = static_cast<std::uint64_t>(config.seed) + static_cast<std::uint64_t>(number);
-  const LidarScene scene = LidarScene::rows(scenario.layout, scenario.plants, seed);
+  const LidarScene scene = scenario.scan
+                               ? LidarScene::tiled(scenario.layout, strips, scenario.plants, seed)
+                               : LidarScene::rows(scenario.layout, scenario.plants, seed);
   std::vector<RowDetectorConfig> detectors;
   for (const RowMode mode : kModes) {
     RowDetectorConfig detector = config.detector;
@@ -151,6 +173,12 @@ std::optional<Error> RowsStudyConfig::check() const {
   }
   for (const RowScenario& scene : scenes) {
     if (auto error = scene.plants.check()) return error;
+    if (scene.scan && scene.scan->offsets_m.empty()) {
+      return Error{ErrorCode::kMissingKey,
+                   "scan.offsets_m names no row of the scan",
+                   "name at least one",
+                   {{}, 0, "scan.offsets_m"}};
+    }
     if (scene.layout.rows_count < 2 || scene.layout.rows_count % 2 != 0) {
       return Error{ErrorCode::kOutOfRange,
                    "rows_count is no even number of rows",
@@ -161,15 +189,24 @@ std::optional<Error> RowsStudyConfig::check() const {
   return std::nullopt;
 }
 
-Result<StudyResult> run_rows_study(const RowsStudyConfig& config, int jobs) {
+Result<StudyResult> run_rows_study(const RowsStudyConfig& config,
+                                   const std::filesystem::path& folder, int jobs) {
   if (auto error = config.check()) return tl::unexpected<Error>(std::move(*error));
   const auto scenes = config.scenes.size();
+  std::vector<std::vector<CanopyStrip>> strips(scenes);
+  for (std::size_t scene = 0; scene < scenes; ++scene) {
+    if (!config.scenes[scene].scan) continue;
+    auto read = read_strips(*config.scenes[scene].scan, folder);
+    if (!read) return tl::unexpected<Error>(std::move(read.error()));
+    strips[scene] = std::move(*read);
+  }
   std::vector<std::vector<Run>> runs(scenes,
                                      std::vector<Run>(static_cast<std::size_t>(config.runs_count)));
   parallel_for(static_cast<int>(scenes) * config.runs_count, jobs, [&](int i) {
     const auto scene = static_cast<std::size_t>(i / config.runs_count);
     const int number = i % config.runs_count;
-    runs[scene][static_cast<std::size_t>(number)] = run_scene(config, config.scenes[scene], number);
+    runs[scene][static_cast<std::size_t>(number)] =
+        run_scene(config, config.scenes[scene], strips[scene], number);
   });
   StudyResult result{config.study};
   for (std::size_t scene = 0; scene < scenes; ++scene) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,17 +13,37 @@
 
 namespace headland {
 
-/// One of seed 000's scenes.
+/// A scan of real plants, cut into strips along their rows that are tiled along the scene's.
+struct ScannedPlants {
+  std::string file;
+  double heading_deg = 0.0;
+  std::vector<double> offsets_m;
+  double half_width_m = 0.6;
+
+  template <class V>
+  void visit(V& v) {
+    v.required("file", file,
+               "PCD or PLY, relative to the study's; $HEADLAND_DATA: the folder of data");
+    v("heading_deg", heading_deg, config::Range{-360.0, 360.0},
+      "Of the scanned rows, in the scan's frame [deg]");
+    v("offsets_m", offsets_m, "Of the scanned rows across that heading, to the left [m]");
+    v("half_width_m", half_width_m, config::kPositive, "Of a strip [m]");
+  }
+};
+
+/// One of seed 000's scenes, or real plants.
 struct RowScenario {
   std::string name;
   RowLayout layout;
   OrchardConfig plants;
+  std::optional<ScannedPlants> scan;
 
   template <class V>
   void visit(V& v) {
     v.required("name", name, "Such as orchard_leaf: a cell's name");
     v("layout", layout, "Rows");
-    v("plants", plants, "What grows along them");
+    v("plants", plants, "What grows along them; of scanned ones, grass and curvature");
+    v("scan", scan, "Real plants in their place");
   }
 };
 
@@ -57,7 +78,9 @@ struct RowsStudyConfig {
 /// the headland), row_end_error_m (mean over the last 8 m), row_end_max_m, row_end_first_m (ours);
 /// lateral_mae_m and lateral_std_m of the difference of the distances to both sides in the closed
 /// loop, driven_ratio; scan_ms (processor time of an update, with p99). All else is deterministic,
-/// whatever `jobs` is.
-Result<StudyResult> run_rows_study(const RowsStudyConfig& config, int jobs = 1);
+/// whatever `jobs` is. Scans' files are relative to `folder`. Errors: of those files; kOutOfRange
+/// where a strip of one holds no plant.
+Result<StudyResult> run_rows_study(const RowsStudyConfig& config,
+                                   const std::filesystem::path& folder, int jobs = 1);
 
 }  // namespace headland

@@ -25,7 +25,7 @@ RowsStudyConfig shipped() {
 }
 
 TEST(RowsStudy, OursKeepsTheBarsInAllScenes) {
-  const auto result = run_rows_study(shipped(), 2);
+  const auto result = run_rows_study(shipped(), "", 2);
   ASSERT_TRUE(result);
   const struct {
     const char* cell;
@@ -45,21 +45,43 @@ TEST(RowsStudy, OursKeepsTheBarsInAllScenes) {
   }
 }
 
+// The pines of data/lidar/pine_plot, tiled along rows: plants that nobody modelled.
+TEST(RowsStudy, OursKeepsTheBarsAmongRealPlants) {
+  const auto file = config::load<RowsStudyConfig>("config/studies/rows_pines.yaml");
+  ASSERT_TRUE(file) << to_string(file.error());
+  RowsStudyConfig config = *file;
+  config.runs_count = 1;
+  for (RowScenario& scene : config.scenes) scene.layout.length_m = 30.0;
+  const auto result = run_rows_study(config, "config/studies", 2);
+  if (!result && result.error().code == ErrorCode::kFileNotFound) GTEST_SKIP();
+  ASSERT_TRUE(result) << to_string(result.error());
+  for (const RowScenario& scene : config.scenes) {
+    EXPECT_LE(mean(*result, scene.name, "mae_m"), 0.05) << scene.name;
+    EXPECT_LE(mean(*result, scene.name, "max_m"), 0.20) << scene.name;
+    EXPECT_GE(mean(*result, scene.name, "row_end_first_m"), 8.0) << scene.name;
+  }
+}
+
 TEST(RowsStudy, TheResultDoesNotDependOnJobsAndNamesWhatIsWrong) {
   RowsStudyConfig config = shipped();
   config.scenes.resize(1);
   config.scenes[0].layout.length_m = 10.0;
   config.runs_count = 2;
-  const auto one = run_rows_study(config, 1);
-  const auto two = run_rows_study(config, 2);
+  const auto one = run_rows_study(config, "", 1);
+  const auto two = run_rows_study(config, "", 2);
   ASSERT_TRUE(one && two);
   EXPECT_EQ(mean(*one, "orchard_bare", "mae_m"), mean(*two, "orchard_bare", "mae_m"));
   config.scenes[0].layout.rows_count = 3;
-  const auto odd = run_rows_study(config);
+  const auto odd = run_rows_study(config, "");
   ASSERT_FALSE(odd);
   EXPECT_EQ(odd.error().where.key, "rows_count");
+  config.scenes[0].layout.rows_count = 2;
+  config.scenes[0].scan = ScannedPlants{"no_such.pcd", 0.0, {1.0}};
+  EXPECT_EQ(run_rows_study(config, "").error().code, ErrorCode::kFileNotFound);
+  config.scenes[0].scan->offsets_m.clear();
+  EXPECT_EQ(run_rows_study(config, "").error().where.key, "scan.offsets_m");
   config.scenes.clear();
-  EXPECT_FALSE(run_rows_study(config));
+  EXPECT_FALSE(run_rows_study(config, ""));
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ TEST(LidarFidelity, RealPinesCanBeTiledAlongRows) {
   ASSERT_EQ(points.size(), 114024u);
   // Rows of trunks run along y at these x.
   std::vector<CanopyStrip> strips;
-  for (const double x : {3.2, 5.5, 7.6}) strips.push_back(cut_strip(points, 0.5 * kPi, -x, 0.6));
+  for (const double x : {0.43, 3.47, 6.34, 9.38}) strips.push_back(cut_strip(points, 0.5 * kPi, -x, 0.6));
   for (const CanopyStrip& strip : strips) EXPECT_GT(strip.size(), 3000u);
   RowLayout layout;
   layout.rows_count = 10;
