@@ -322,6 +322,12 @@ Report run_report(const PlannedMission& planned, const FleetRun& run, double rea
   report.tiles.push_back(
       {"Duration", duration_text(m.duration_s), "",
        fmt::format("simulated {:.0f} times faster than real time", real_time_factor)});
+  if (m.rows_seen.scans > 0) {
+    report.tiles.push_back(
+        tile("Rows seen", 100.0 * m.rows_seen.valid_ratio(), 0.1, "%",
+             fmt::format("of scans; {:.0f} mm off in the mean, {:.0f} mm at most",
+                         1000.0 * m.rows_seen.mae_m(), 1000.0 * m.rows_seen.largest_m)));
+  }
   if (!run.agents.empty()) {
     const EncounterMetrics& e = m.encounters;
     report.tiles.push_back({"Path left", fmt::format("{}", e.takeovers), "times",

@@ -7,10 +7,10 @@
 namespace headland {
 
 /// Which speeds a vehicle can be told next, one cycle after the other, at its acceleration. They go
-/// on from the speed told before: from a noisy measured one, the smaller of two readings would
-/// always be where braking or speeding up begins anew, and a vehicle with wheels that read to
-/// 2 cm/s would brake at half of what it can. Of a vehicle that does not follow, they stay within
-/// half a second's acceleration of the measured speed. Does not allocate.
+/// on from the speed told before. Going on from the measured speed instead would brake and speed up
+/// too slowly: every reading that is off the wrong way takes back what the last cycle gained, so
+/// that noise of 2 cm/s at 50 Hz halves the acceleration. Where a vehicle does not follow, they
+/// stay within half a second's acceleration of the measured speed. Does not allocate.
 class SpeedRamp {
  public:
   /// `acceleration` [m/s^2] > 0.

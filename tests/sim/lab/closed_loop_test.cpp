@@ -5,17 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/rover.hpp"
+
 namespace headland {
 namespace {
 
 Vehicle rover() {
-  Vehicle vehicle;
-  vehicle.name = "rover";
-  vehicle.steering = Steering::kDifferential;
-  vehicle.min_turning_radius_m = 1.0;
-  vehicle.work_speed_mps = 1.0;
-  vehicle.transit_speed_mps = 1.0;
-  vehicle.turn_speed_mps = 1.0;
+  Vehicle vehicle = test::rover();
   vehicle.battery.capacity_wh = 100.0;
   vehicle.battery.reserve_soc = 0.1;
   vehicle.energy.mass_kg = 600.0;

@@ -5,18 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "sim/lab/closed_loop.hpp"
+#include "tests/support/rover.hpp"
 
 namespace headland {
 namespace {
 
 Vehicle rover() {
-  Vehicle vehicle;
-  vehicle.name = "rover";
-  vehicle.steering = Steering::kDifferential;
-  vehicle.min_turning_radius_m = 1.0;
-  vehicle.work_speed_mps = 1.0;
-  vehicle.transit_speed_mps = 1.0;
-  vehicle.turn_speed_mps = 1.0;
+  Vehicle vehicle = test::rover();
   vehicle.footprint = {0.8, 0.8, 1.0};
   vehicle.battery.capacity_wh = 500.0;
   vehicle.battery.reserve_soc = 0.1;

@@ -9,6 +9,7 @@
 
 #include "sim/lab/closed_loop.hpp"
 #include "tests/support/coverage_fields.hpp"
+#include "tests/support/rover.hpp"
 
 namespace headland {
 namespace {
@@ -17,11 +18,7 @@ constexpr double kRow = 20.0;     // long [m]
 constexpr double kBeside = 0.25;  // the robot begins so far beside the row's middle [m]
 
 Vehicle rover() {
-  Vehicle vehicle;
-  vehicle.name = "rover";
-  vehicle.steering = Steering::kDifferential;
-  vehicle.min_turning_radius_m = 1.0;
-  vehicle.work_speed_mps = 1.0;
+  Vehicle vehicle = test::rover();
   vehicle.battery.capacity_wh = 500.0;
   vehicle.lidar = SensorMount{.x_m = 0.3, .z_m = 1.4};
   return vehicle;
